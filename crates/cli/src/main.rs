@@ -1,0 +1,2 @@
+//! The kelir command.
+fn main() {}

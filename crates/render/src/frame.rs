@@ -1,0 +1,75 @@
+//! What a renderer is asked for and what it answers.
+
+use kelir_scene::Theatre;
+use serde::{Deserialize, Serialize};
+
+/// How a pixel's value is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Pixel {
+    /// The mean over the pixel's area (the default).
+    #[default]
+    Area,
+    /// The value at the pixel's centre.
+    Centre,
+}
+
+/// The image asked for; its aspect equals the screen's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct View {
+    /// Pixels [width, height].
+    pub size: [usize; 2],
+    /// Pixel rule.
+    pub pixel: Pixel,
+    /// Whether work that the scene does not need is skipped; the bytes are the same either way.
+    pub skip: bool,
+}
+
+/// A drawn image in linear light.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Pixels [width, height].
+    pub size: [usize; 2],
+    /// The audience's linear radiance, three planes (R, G, B) of `width * height`, row-major, first row on top.
+    pub radiance: [Vec<f32>; 3],
+    /// Further channels: `Vgeo.<emitter>`, `Virr.<emitter>` (suffixed `.R/.G/.B` where puppets are coloured), `SE.R/G/B`.
+    pub layers: Vec<Layer>,
+    /// What was done and skipped.
+    pub stats: Stats,
+}
+
+/// One named f32 channel of a frame.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    /// Channel name, as written to EXR.
+    pub name: String,
+    /// `width * height` values, row-major, first row on top.
+    pub values: Vec<f32>,
+}
+
+/// Counters and step times of one drawing, in the order they happened.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Stats {
+    /// Name → count: what was done and what was skipped.
+    pub counts: std::collections::BTreeMap<String, u64>,
+    /// (step, milliseconds of wall time).
+    pub steps_ms: Vec<(String, f64)>,
+}
+
+/// Draws theatres with one technique on one backend; keeps what it built between calls and reuses what did not change.
+pub trait Renderer: Send {
+    /// The audience's linear radiance.
+    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, crate::RenderError>;
+
+    /// Display codes: sRGB-encoded clip(L / white), each pixel `0xFFBBGGRR` (bytes R, G, B, 255), into `out` of `width * height`.
+    fn display(
+        &mut self,
+        theatre: &Theatre,
+        view: &View,
+        white: f64,
+        out: &mut [u32],
+    ) -> Result<Stats, crate::RenderError>;
+
+    /// What drew it, for provenance: "native 2 threads avx2" or the GPU adapter's name and driver.
+    fn adapter(&self) -> String;
+}

@@ -1,0 +1,207 @@
+//! The theatre at one instant, ready to draw: what every rendering technique is handed.
+//!
+//! Units: metres, radians nowhere (tilts are kept in degrees as written), radiance in W·m⁻²·sr⁻¹ up to one exposure.
+//! Axes: the screen is z = 0, x right and y up as the audience (z > 0) sees it; lamp and puppets are at z < 0.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+/// Everything that light meets between the lamp and the audience at one instant.
+#[derive(Clone, Debug)]
+pub struct Theatre {
+    /// The cloth.
+    pub screen: Screen,
+    /// The bulb: emitters that share one centre, add up, and never occlude each other.
+    pub lamp: Lamp,
+    /// Light that does not come from the lamp.
+    pub ambient: Ambient,
+    /// One occluder plane a puppet, in the file's order.
+    pub planes: Vec<Plane>,
+    /// What the display shows as white.
+    pub exposure: Exposure,
+}
+
+/// The rear-lit screen: the rectangle `width_m` × `height_m` in z = 0, centred on the origin.
+#[derive(Clone, Debug)]
+pub struct Screen {
+    /// Width in metres, > 0.
+    pub width_m: f64,
+    /// Height in metres, > 0.
+    pub height_m: f64,
+    /// Diffuse albedo, each channel in [0, 1].
+    pub albedo: Albedo,
+}
+
+/// Linear Rec. 709 albedo over the screen.
+#[derive(Clone, Debug)]
+pub enum Albedo {
+    /// The same everywhere.
+    Uniform([f64; 3]),
+    /// Stretched over the screen, first row at +y; an image or a procedural weave, already linear.
+    Image(Arc<LinearImage>),
+}
+
+/// A linear RGB image, row-major, first row on top.
+#[derive(Clone, Debug)]
+pub struct LinearImage {
+    /// Pixels a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// `width * height` linear RGB triples.
+    pub rgb: Vec<[f32; 3]>,
+}
+
+/// The bulb.
+#[derive(Clone, Debug)]
+pub struct Lamp {
+    /// The common centre of all emitters; z < 0.
+    pub position_m: DVec3,
+    /// At least one.
+    pub emitters: Vec<Emitter>,
+}
+
+/// A one-sided Lambertian emitter parallel to the screen and centred on the lamp's position.
+#[derive(Clone, Debug)]
+pub struct Emitter {
+    /// Unique within the lamp; names the image channels `Vgeo.<name>` and `Virr.<name>`.
+    pub name: String,
+    /// Outline.
+    pub shape: EmitterShape,
+    /// Radiance per linear channel, ≥ 0.
+    pub radiance: [f64; 3],
+}
+
+/// Outline of an emitter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EmitterShape {
+    /// Full side lengths along x and y, metres.
+    Rectangle {
+        /// [width, height], each > 0.
+        size_m: [f64; 2],
+    },
+    /// A disk.
+    Disk {
+        /// Radius in metres, > 0.
+        radius_m: f64,
+    },
+}
+
+impl EmitterShape {
+    /// Area in m².
+    pub fn area_m2(&self) -> f64 {
+        match *self {
+            Self::Rectangle { size_m: [w, h] } => w * h,
+            Self::Disk { radius_m } => std::f64::consts::PI * radius_m * radius_m,
+        }
+    }
+
+    /// Half-extents of the bounding rectangle, metres.
+    pub fn half_extent_m(&self) -> [f64; 2] {
+        match *self {
+            Self::Rectangle { size_m: [w, h] } => [0.5 * w, 0.5 * h],
+            Self::Disk { radius_m } => [radius_m; 2],
+        }
+    }
+}
+
+/// Ambient light models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ambient {
+    /// Black where no lamp light arrives.
+    None,
+    /// The paper's: shadows pale with the puppet's distance D from the screen, by min(D / k_d, 1) · s.
+    Paper {
+        /// Distance at which the shadow has paled fully, metres, > 0.
+        k_d_m: f64,
+        /// Share of the lit screen's colour that a fully paled shadow has, per channel, in [0, 1].
+        s: [f64; 3],
+    },
+    /// A uniform dome backstage, occluded by the puppets.
+    Dome {
+        /// Radiance per channel, ≥ 0.
+        radiance: [f64; 3],
+    },
+}
+
+/// What the display shows as white.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// The brightest unshadowed point of the whole timeline.
+    Auto,
+    /// A radiance, > 0.
+    White(f64),
+}
+
+/// One puppet's occluder plane: a grid of texels of constant transmittance.
+///
+/// A point of the plane is `centre_m + R_y(tilt_deg[1]) · R_x(tilt_deg[0]) · (u, v, 0)` with u right and v up;
+/// the puppet's own rotation and pose are already in the mask. Outside the grid the transmittance is 1.
+#[derive(Clone, Debug)]
+pub struct Plane {
+    /// The texels.
+    pub mask: Arc<Mask>,
+    /// The centre of the grid.
+    pub centre_m: DVec3,
+    /// Full size of the grid along u and v, metres, > 0.
+    pub size_m: [f64; 2],
+    /// Degrees about x, then about y; [0, 0] is parallel to the screen.
+    pub tilt_deg: [f64; 2],
+}
+
+/// Quantised transmittance: the truth for every technique.
+#[derive(Debug)]
+pub struct Mask {
+    /// Texels a row.
+    pub width: usize,
+    /// Rows; the first row is at +v.
+    pub height: usize,
+    /// 1 (grey: the same for R, G and B) or 3.
+    pub channels: usize,
+    /// `channels` planes of `width * height` texels, row-major.
+    pub texels: Texels,
+    /// Unique within the process for every distinct content: two masks of equal id are the same mask.
+    pub id: u64,
+}
+
+/// Texel storage; transmittance τ is the code divided by the largest code.
+#[derive(Debug)]
+pub enum Texels {
+    /// 255 lets everything through.
+    U8(Vec<u8>),
+    /// 65535 lets everything through.
+    U16(Vec<u16>),
+}
+
+impl Mask {
+    /// A mask with a fresh id. Panics when the texel count is not `width * height * channels`.
+    pub fn new(width: usize, height: usize, channels: usize, texels: Texels) -> Self {
+        static NEXT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(1);
+        let len = match &texels {
+            Texels::U8(t) => t.len(),
+            Texels::U16(t) => t.len(),
+        };
+        assert!(channels == 1 || channels == 3, "a mask has 1 or 3 channels, not {channels}");
+        assert_eq!(len, width * height * channels, "texel count");
+        let id = NEXT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        Self { width, height, channels, texels, id }
+    }
+
+    /// The largest code: 255 or 65535.
+    pub fn max_code(&self) -> u32 {
+        match self.texels {
+            Texels::U8(_) => 255,
+            Texels::U16(_) => 65535,
+        }
+    }
+
+    /// Transmittance in [0, 1] of channel `c` (0..3; grey masks answer for all three) at column `x`, row `y`.
+    pub fn transmittance(&self, c: usize, x: usize, y: usize) -> f64 {
+        let i = ((c % self.channels) * self.height + y) * self.width + x;
+        match &self.texels {
+            Texels::U8(t) => f64::from(t[i]) / 255.0,
+            Texels::U16(t) => f64::from(t[i]) / 65535.0,
+        }
+    }
+}
