@@ -1,2 +1,79 @@
-//! Project tasks.
-fn main() {}
+//! Project tasks: `cargo xtask serve | test | shots`. Typed, no makefile beside it.
+//!
+//! It depends on nothing that takes long to build: a fresh machine meets it first.
+
+mod install;
+mod run;
+
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use clap::{Parser, Subcommand};
+
+use install::{Need, ensure};
+use run::{cargo, npm, step};
+
+/// Project tasks.
+#[derive(Parser)]
+#[command(name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Install what is missing, build, make the built-in study's stimuli and serve it on 127.0.0.1:8080.
+    Serve {
+        /// Where answers, stimuli and the researcher's password live.
+        #[arg(long, default_value = "data")]
+        data: PathBuf,
+        /// Address to listen on.
+        #[arg(long, default_value = "127.0.0.1:8080")]
+        listen: String,
+    },
+    /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests.
+    Test,
+}
+
+fn main() -> Result<()> {
+    let root = run::root();
+    std::env::set_current_dir(&root)?;
+    match Cli::parse().task {
+        Task::Serve { data, listen } => serve(&data, &listen),
+        Task::Test => test(),
+    }
+}
+
+/// Builds in release and becomes the server; a second start builds and renders nothing again.
+fn serve(data: &std::path::Path, listen: &str) -> Result<()> {
+    ensure(&[Need::Node, Need::Vulkan])?;
+    step(
+        "build",
+        cargo(&["build", "--release", "--workspace", "--exclude", "xtask", "--exclude", "kelir-tests"]),
+    )?;
+    let binary = run::target_dir().join("release/kelir");
+    let mut server = std::process::Command::new(&binary);
+    server.arg("serve").arg("--data").arg(data).args(["--listen", listen]);
+    let status = server.status()?;
+    if !status.success() {
+        bail!("{} ended with {status}", binary.display());
+    }
+    Ok(())
+}
+
+/// Everything the gate holds.
+fn test() -> Result<()> {
+    ensure(&[Need::Node, Need::Vulkan, Need::Chromium, Need::Sqlite])?;
+    step("format", cargo(&["fmt", "--all", "--check"]))?;
+    step("web packages", npm("web", &["ci", "--ignore-scripts"]))?;
+    step("web types", npm("web", &["run", "check"]))?;
+    step("web units", npm("web", &["test"]))?;
+    step("browser driver", npm("tests", &["ci", "--ignore-scripts"]))?;
+    step("lints", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    // The end-to-end tests run the real binary, so it is built first.
+    step("build", cargo(&["build", "--workspace"]))?;
+    step("tests", cargo(&["test", "--workspace"]))?;
+    eprintln!("── all tests passed");
+    Ok(())
+}

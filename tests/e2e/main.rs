@@ -1,0 +1,4 @@
+//! End to end: the real binary, a real browser, a real database.
+#![allow(clippy::unwrap_used)]
+
+mod invariants;
