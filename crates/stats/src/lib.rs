@@ -1,1 +1,19 @@
-//! kelir-stats
+//! Numbers judged: the statistics of forced-choice studies, in plain `f64`, with no dependency on the rest of
+//! the workspace.
+//!
+//! | module | what is in it |
+//! |---|---|
+//! | [`distributions`] | normal, Student t, noncentral t, beta, gamma and χ², F, binomial |
+//! | [`descriptive`] | mean, variance, autocorrelation, one-way analysis of variance |
+//! | [`inference`] | tests, intervals, effect sizes, equivalence, Bayes factor, corrections, power |
+//!
+//! Invalid input is an `Err` ([`StatsError`]) that names the field, the value and the rule. NaN is always invalid
+//! input: no function takes or returns one in silence. What is a *finding* is a value.
+#![warn(missing_docs)]
+
+pub mod descriptive;
+pub mod distributions;
+mod error;
+pub mod inference;
+
+pub use error::{Result, StatsError};

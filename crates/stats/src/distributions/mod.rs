@@ -1,0 +1,1 @@
+//! Probability distributions, with both tails, their logarithms and their quantiles.
