@@ -9,7 +9,8 @@ use serde_json::Value;
 const PURE: [&str; 4] = ["kelir-scene", "kelir-stats", "kelir-study", "kelir-vision"];
 const IMPURE: [&str; 4] = ["tokio", "sqlx", "axum", "wgpu"];
 /// Libraries that one room alone may name.
-const OWNED: [(&str, &str); 3] = [("wgpu", "kelir-render"), ("sqlx", "kelir-store"), ("axum", "kelir-server")];
+const OWNED: [(&str, &str); 3] =
+    [("wgpu", "kelir-render"), ("sqlx", "kelir-store"), ("axum", "kelir-server")];
 
 /// Every broken invariant, as a sentence.
 fn violations(metadata: &Value) -> Vec<String> {
@@ -56,8 +57,16 @@ fn packages(metadata: &Value) -> impl Iterator<Item = &Value> {
 }
 
 fn normal_dependencies(node: &Value) -> Vec<&str> {
-    let normal = |dep: &&Value| dep["dep_kinds"].as_array().is_some_and(|kinds| kinds.iter().any(|k| k["kind"].is_null()));
-    node["deps"].as_array().expect("deps").iter().filter(normal).filter_map(|dep| dep["pkg"].as_str()).collect()
+    let normal = |dep: &&Value| {
+        dep["dep_kinds"].as_array().is_some_and(|kinds| kinds.iter().any(|k| k["kind"].is_null()))
+    };
+    node["deps"]
+        .as_array()
+        .expect("deps")
+        .iter()
+        .filter(normal)
+        .filter_map(|dep| dep["pkg"].as_str())
+        .collect()
 }
 
 fn closure<'a>(from: &'a str, edges: &BTreeMap<&'a str, Vec<&'a str>>) -> BTreeSet<&'a str> {
@@ -72,7 +81,10 @@ fn closure<'a>(from: &'a str, edges: &BTreeMap<&'a str, Vec<&'a str>>) -> BTreeS
 }
 
 fn metadata() -> Value {
-    let out = Command::new(env!("CARGO")).args(["metadata", "--format-version", "1", "--offline"]).output().expect("cargo metadata");
+    let out = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--offline"])
+        .output()
+        .expect("cargo metadata");
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     serde_json::from_slice(&out.stdout).expect("json")
 }
@@ -90,7 +102,8 @@ fn a_broken_wall_is_seen() {
         package["id"].as_str().expect("id").to_owned()
     };
     let (stats, axum) = (id_of("kelir-stats"), id_of("axum"));
-    let edge = serde_json::json!({"name": "axum", "pkg": axum, "dep_kinds": [{"kind": null, "target": null}]});
+    let edge =
+        serde_json::json!({"name": "axum", "pkg": axum, "dep_kinds": [{"kind": null, "target": null}]});
     let nodes = doctored["resolve"]["nodes"].as_array_mut().expect("nodes");
     let node = nodes.iter_mut().find(|node| node["id"] == stats.as_str()).expect("node");
     node["deps"].as_array_mut().expect("deps").push(edge);

@@ -1,6 +1,21 @@
 //! How a theatre is drawn: one folder per technique, its WGSL beside its CPU twin.
+//!
+//! A [`Technique`] with its knobs becomes a [`Renderer`] on a [`Backend`]; the renderer turns theatres into linear
+//! [`Frame`]s or display codes. Everything that techniques share lives beside this file: the irradiance of an
+//! unshadowed emitter ([`irradiance`]), where a point of the screen sees the emitter on an occluder plane
+//! ([`project`]), the albedo on the pixel grid ([`albedo`]) and the exposure ([`exposure`]).
+
+pub mod albedo;
+pub mod exposure;
 pub mod frame;
+pub mod gpu;
+pub mod irradiance;
+pub mod project;
+pub mod techniques;
+
+pub use exposure::white;
 pub use frame::*;
+pub use techniques::{Backend, Technique, mc, oracle, pa, renderer};
 
 /// Why nothing was drawn.
 #[derive(Debug, thiserror::Error)]
@@ -16,7 +31,21 @@ pub enum RenderError {
     /// The image asked for is not possible.
     #[error("{0}")]
     View(String),
+    /// A knob is out of its range; the message names the knob, the value and the rule.
+    #[error("{0}")]
+    Knob(String),
     /// No adapter, or it failed.
     #[error("GPU: {0}")]
     Gpu(String),
+    /// An image could not be encoded.
+    #[error("encoding: {0}")]
+    Encode(String),
+    /// A file could not be written.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
 }

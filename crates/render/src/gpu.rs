@@ -1,0 +1,1 @@
+//! The wgpu device that techniques share.

@@ -1,0 +1,67 @@
+//! The techniques: adding one is a new folder here, one variant of [`Technique`] and one line of [`renderer`].
+
+pub mod mc;
+pub mod oracle;
+pub mod pa;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{RenderError, Renderer};
+
+/// What draws: every technique with its knobs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "technique", rename_all = "kebab-case")]
+pub enum Technique {
+    /// Summed-area tables (Taylor & Cameron).
+    Pa(pa::Knobs),
+    /// Monte Carlo, the ground truth with a standard error.
+    Mc(mc::Knobs),
+    /// Slow f64 sums without random numbers, for crops and tests.
+    Oracle(oracle::Knobs),
+}
+
+impl Technique {
+    /// The name in files, tables and messages.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Pa(_) => "pa",
+            Self::Mc(_) => "mc",
+            Self::Oracle(_) => "oracle",
+        }
+    }
+}
+
+/// Where it draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Backend {
+    /// A real GPU where there is one, else the native code.
+    #[default]
+    Auto,
+    /// Native code on all cores.
+    Cpu,
+    /// wgpu compute, on whatever adapter there is, also a software one.
+    Gpu,
+}
+
+impl std::str::FromStr for Backend {
+    type Err = RenderError;
+
+    fn from_str(s: &str) -> Result<Self, Self::Err> {
+        match s {
+            "auto" => Ok(Self::Auto),
+            "cpu" => Ok(Self::Cpu),
+            "gpu" => Ok(Self::Gpu),
+            _ => Err(RenderError::Knob(format!("backend = {s:?}: one of auto, cpu, gpu"))),
+        }
+    }
+}
+
+/// A renderer for `technique`. Errors: a knob out of range, or `Backend::Gpu` without any adapter.
+pub fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
+    match technique {
+        Technique::Pa(knobs) => pa::renderer(knobs, backend),
+        Technique::Mc(knobs) => mc::renderer(knobs, backend),
+        Technique::Oracle(knobs) => oracle::renderer(knobs),
+    }
+}
