@@ -6,6 +6,7 @@
 //! ([`project`]), the albedo on the pixel grid ([`albedo`]) and the exposure ([`exposure`]).
 
 pub mod albedo;
+pub mod ambient;
 pub mod exposure;
 pub mod frame;
 pub mod gpu;
