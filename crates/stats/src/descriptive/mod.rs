@@ -1,1 +1,5 @@
-//! Samples described.
+//! Samples described: moments that reach the precision of their inputs.
+
+mod moments;
+
+pub use moments::Moments;
