@@ -1,1 +1,163 @@
-//! Helpers of the end-to-end tests.
+//! Helpers of the end-to-end tests: the real binary, a server, a database shell, a browser.
+#![allow(clippy::unwrap_used)]
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+/// The repository's root.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
+
+/// The built `kelir` beside this test binary; `cargo xtask test` builds it first.
+pub fn binary() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    let path = test.parent().unwrap().parent().unwrap().join("kelir");
+    assert!(path.is_file(), "{} is missing: run `cargo build --workspace` first (cargo xtask test does)", path.display());
+    path
+}
+
+/// Runs `kelir ARGS` to its end.
+pub fn kelir<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> Output {
+    Command::new(binary()).args(args).current_dir(root()).stdin(Stdio::null()).output().unwrap()
+}
+
+/// Runs `kelir ARGS`, expects success, and answers its standard output.
+pub fn kelir_ok<S: AsRef<std::ffi::OsStr> + std::fmt::Debug>(args: &[S]) -> String {
+    let out = kelir(args);
+    assert!(out.status.success(), "kelir {args:?}: {}\n{}", out.status, String::from_utf8_lossy(&out.stderr));
+    String::from_utf8(out.stdout).unwrap()
+}
+
+/// A running `kelir serve`; killed (SIGKILL) when dropped.
+pub struct Server {
+    child: Child,
+    /// `http://127.0.0.1:PORT`.
+    pub base: String,
+    /// Its data folder.
+    pub data: PathBuf,
+}
+
+impl Server {
+    /// Starts on a free port and waits until it answers; `ready` also waits until the built-in study can be taken.
+    pub fn start(data: &Path, ready: bool) -> Self {
+        let mut child = Command::new(binary())
+            .args(["serve", "--listen", "127.0.0.1:0", "--data"])
+            .arg(data)
+            .current_dir(std::env::temp_dir())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::inherit())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let mut base = None;
+        for line in lines.by_ref() {
+            let line = line.unwrap();
+            if let Some(at) = line.find("http://") {
+                let url = line[at..].split_whitespace().next().unwrap();
+                let end = url[7..].find('/').map_or(url.len(), |slash| slash + 7);
+                base = Some(url[..end].to_owned());
+                break;
+            }
+        }
+        // Keep the pipe drained, or the server would block on a full one.
+        std::thread::spawn(move || lines.for_each(drop));
+        let server = Self { child, base: base.expect("the server prints its links"), data: data.to_path_buf() };
+        server.wait(if ready { "/api/v1/studies/shadow-puppets" } else { "/healthz" });
+        server
+    }
+
+    fn wait(&self, path: &str) {
+        let begun = Instant::now();
+        loop {
+            if ureq::get(format!("{}{path}", self.base)).call().is_ok() {
+                return;
+            }
+            assert!(begun.elapsed() < Duration::from_secs(900), "{path} did not answer");
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    }
+
+    /// `kill -9`, at once.
+    pub fn kill(mut self) {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+    }
+
+    /// Ends it the way a service manager does (SIGTERM) and waits.
+    pub fn terminate(mut self) -> std::process::ExitStatus {
+        let pid = self.child.id().to_string();
+        assert!(Command::new("kill").arg(&pid).status().unwrap().success());
+        self.child.wait().unwrap()
+    }
+
+    /// Sends a request with a JSON body (none for `Value::Null`) and answers (status, JSON body).
+    pub fn call(&self, method: &str, path: &str, token: Option<&str>, body: &Value) -> (u16, Value) {
+        let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
+        let mut request = ureq::http::Request::builder().method(method).uri(format!("{}{path}", self.base));
+        if let Some(token) = token {
+            request = request.header("Authorization", format!("Bearer {token}"));
+        }
+        let text = if body.is_null() { String::new() } else { body.to_string() };
+        if !body.is_null() {
+            request = request.header("Content-Type", "application/json");
+        }
+        let mut answer = agent.run(request.body(text).unwrap()).unwrap();
+        let status = answer.status().as_u16();
+        let text = answer.body_mut().read_to_string().unwrap();
+        (status, serde_json::from_str(&text).unwrap_or(Value::String(text)))
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Rows of a query, read with the sqlite3 shell: a program that is not ours.
+pub fn sql(database: &Path, query: &str) -> Vec<Value> {
+    let out = Command::new("sqlite3").arg("-json").arg(database).arg(query).output().expect("sqlite3 is installed");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    if out.stdout.trim_ascii().is_empty() { Vec::new() } else { serde_json::from_slice(&out.stdout).unwrap() }
+}
+
+/// Runs a script of tests/browser with one JSON argument and answers the JSON of its last line.
+pub fn browser(script: &str, argument: &Value) -> Value {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    assert!(folder.join("node_modules/playwright-core").is_dir(), "run `npm ci --ignore-scripts` in tests/ first");
+    let out = Command::new("node")
+        .arg(folder.join("browser").join(script))
+        .arg(argument.to_string())
+        .current_dir(folder)
+        .stderr(Stdio::inherit())
+        .output()
+        .expect("node is installed");
+    let text = String::from_utf8(out.stdout).unwrap();
+    assert!(out.status.success(), "{script} failed:\n{text}");
+    serde_json::from_str(text.trim_end().lines().last().expect("output")).unwrap()
+}
+
+/// A data folder with the built-in study's stimuli, made once for the whole test run and copied for each test.
+pub fn prepared_data() -> tempfile::TempDir {
+    static MADE: std::sync::OnceLock<PathBuf> = std::sync::OnceLock::new();
+    let made = MADE.get_or_init(|| {
+        // Beside the build, so that a test run cleans up after the one before it.
+        let data = binary().parent().unwrap().parent().unwrap().join("tmp/e2e-data");
+        let _ = std::fs::remove_dir_all(&data);
+        std::fs::create_dir_all(&data).unwrap();
+        let status = Server::start(&data, true).terminate();
+        assert!(status.success(), "a server that is asked to stop ends well: {status}");
+        data
+    });
+    let copy = tempfile::tempdir().unwrap();
+    let done = Command::new("cp").arg("-a").arg(made.join(".")).arg(copy.path()).status().unwrap();
+    assert!(done.success());
+    copy
+}
