@@ -1,2 +1,69 @@
-//! The kelir command.
-fn main() {}
+//! The one binary of kelir. Exit codes: 0 done, 1 something failed, 2 the input is wrong and nothing was written.
+
+mod commands;
+mod progress;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// A platform for perceptual studies of shadows: render, ask, store, judge.
+#[derive(Parser)]
+#[command(name = "kelir", version, propagate_version = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Serve the studies: participants' pages, the researcher's console, stimuli.
+    Serve(commands::serve::Args),
+    /// Draw one image of a scene.
+    Render(commands::render::Args),
+    /// Draw the frames of a scene's timeline.
+    Animate(commands::animate::Args),
+    /// Look at scene files.
+    #[command(subcommand)]
+    Scene(commands::scene::Command),
+    /// Look at study files.
+    #[command(subcommand)]
+    Study(commands::study::Command),
+    /// Judge the answers of a study, or numbers of your own.
+    Stats(commands::stats::Args),
+}
+
+/// The input is wrong: exit code 2, nothing written.
+#[derive(Debug)]
+pub struct BadInput(pub String);
+
+impl std::fmt::Display for BadInput {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for BadInput {}
+
+/// Turns a library's complaint about its input into [`BadInput`].
+pub fn bad_input(error: impl std::fmt::Display) -> anyhow::Error {
+    anyhow::Error::new(BadInput(error.to_string()))
+}
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Serve(args) => commands::serve::run(args),
+        Command::Render(args) => commands::render::run(args),
+        Command::Animate(args) => commands::animate::run(args),
+        Command::Scene(command) => commands::scene::run(command),
+        Command::Study(command) => commands::study::run(command),
+        Command::Stats(args) => commands::stats::run(args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("kelir: {error:#}");
+            if error.is::<BadInput>() { ExitCode::from(2) } else { ExitCode::FAILURE }
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The options that `render` and `animate` share: technique, knobs, size, backend.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::ValueEnum;
+use kelir_render::{Backend, Pixel, RenderError, Technique, View, mc, oracle, pa};
+use kelir_scene::{Scene, Theatre};
+
+use crate::bad_input;
+
+/// What to draw and how.
+#[derive(clap::Args)]
+pub struct Drawing {
+    /// Scene file (TOML).
+    pub scene: PathBuf,
+    /// What draws: pa (summed-area tables), mc (Monte Carlo, the ground truth), oracle (slow f64 sums).
+    #[arg(long, value_enum)]
+    pub technique: TechniqueName,
+    /// Samples a pixel (mc), rounded up to a multiple of 16 replicates.
+    #[arg(long, default_value_t = 64)]
+    pub spp: u32,
+    /// Seed of the sample points (mc): same seed and count, same bytes.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u32,
+    /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 1920 wide.
+    #[arg(long, value_parser = parse_size)]
+    pub size: Option<[usize; 2]>,
+    /// A pixel's value: the mean over its area, or the value at its centre.
+    #[arg(long, value_enum, default_value = "area")]
+    pub pixel: PixelName,
+    /// Where to draw: auto takes a real GPU if there is one, otherwise the native code.
+    #[arg(long, default_value = "auto", value_parser = parse_backend)]
+    pub backend: Backend,
+    /// Compute everything, also what the scene does not need; the bytes are the same.
+    #[arg(long)]
+    pub no_skip: bool,
+    /// Print what was done, skipped and how long each step took.
+    #[arg(long, value_enum)]
+    pub stats: Option<StatsFormat>,
+}
+
+/// Format of `--stats`.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum StatsFormat {
+    /// One JSON object on standard output.
+    Json,
+}
+
+/// Names of the techniques on the command line.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum TechniqueName {
+    /// Summed-area tables.
+    Pa,
+    /// Monte Carlo.
+    Mc,
+    /// f64 sums.
+    Oracle,
+}
+
+/// Names of the pixel rules on the command line.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum PixelName {
+    /// Mean over the pixel.
+    Area,
+    /// Value at the centre.
+    Centre,
+}
+
+impl Drawing {
+    /// The technique with its knobs.
+    pub fn technique(&self) -> Technique {
+        match self.technique {
+            TechniqueName::Pa => Technique::Pa(pa::Knobs::default()),
+            TechniqueName::Mc => Technique::Mc(mc::Knobs { spp: self.spp, seed: self.seed, ..mc::Knobs::default() }),
+            TechniqueName::Oracle => Technique::Oracle(oracle::Knobs::default()),
+        }
+    }
+
+    /// Reads and validates the scene; every problem is named.
+    pub fn load(&self) -> Result<Scene> {
+        Scene::from_path(&self.scene).map_err(bad_input)
+    }
+
+    /// The image asked for.
+    pub fn view(&self, theatre: &Theatre) -> View {
+        let pixel = match self.pixel {
+            PixelName::Area => Pixel::Area,
+            PixelName::Centre => Pixel::Centre,
+        };
+        let aspect = theatre.screen.height_m / theatre.screen.width_m;
+        let size = self.size.unwrap_or_else(|| [1920, (1920.0 * aspect).round() as usize]);
+        View { size, pixel, skip: !self.no_skip }
+    }
+}
+
+/// Errors of drawing: what the user can mend is bad input, a failing disk or GPU is not.
+pub fn render_error(error: RenderError) -> anyhow::Error {
+    match error {
+        RenderError::Inapplicable { .. } | RenderError::View(_) | RenderError::Knob(_) => bad_input(error),
+        other => anyhow::Error::new(other),
+    }
+}
+
+fn parse_size(text: &str) -> Result<[usize; 2], String> {
+    let rule = || format!("{text:?} is no size: write WIDTHxHEIGHT in pixels, as in 1920x1080");
+    let (width, height) = text.split_once('x').ok_or_else(rule)?;
+    let size = [width.parse().map_err(|_| rule())?, height.parse().map_err(|_| rule())?];
+    if size.contains(&0) { Err(rule()) } else { Ok(size) }
+}
+
+fn parse_backend(text: &str) -> Result<Backend, String> {
+    text.parse().map_err(|error: RenderError| error.to_string())
+}

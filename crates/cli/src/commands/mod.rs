@@ -1,0 +1,8 @@
+//! One module a command.
+
+pub mod animate;
+pub mod render;
+pub mod scene;
+pub mod serve;
+pub mod stats;
+pub mod study;
