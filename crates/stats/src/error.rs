@@ -68,6 +68,31 @@ pub enum StatsError {
         /// Why there is none.
         reason: &'static str,
     },
+    /// Conditions that no comparison links cannot be put on one scale.
+    #[error("the comparisons fall apart into {} groups that nothing links: {}", components.len(), list(components))]
+    Disconnected {
+        /// The names of the conditions in each group.
+        components: Vec<Vec<String>>,
+    },
+    /// The maximum of the likelihood is at infinity.
+    #[error("{what} has no finite maximum-likelihood estimate: {reason}")]
+    Separated {
+        /// What was to be estimated.
+        what: &'static str,
+        /// Which answers separate the data.
+        reason: String,
+    },
+    /// An iteration ended without an answer.
+    #[error("{what} did not converge")]
+    NotConverged {
+        /// What was to be computed.
+        what: &'static str,
+    },
+}
+
+/// "{A, B} | {C}"
+fn list(components: &[Vec<String>]) -> String {
+    components.iter().map(|names| format!("{{{}}}", names.join(", "))).collect::<Vec<_>>().join(" | ")
 }
 
 /// A result with the crate's error.

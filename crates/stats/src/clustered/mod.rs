@@ -1,0 +1,60 @@
+//! Choices that come in clusters: several trials from each participant are not independent.
+//!
+//! A participant who prefers one technique prefers it in every pair, so n trials of m participants carry less than n answers. Here are
+//! the size of that dependence ([`intraclass`]), and what to do about it: resample participants ([`bootstrap`]), keep the per-trial
+//! model but take its standard errors from the clusters ([`robust_logit`]), or model the participants ([`mixed_logit`]).
+//! [`independence_warning`] says when a per-trial test is not to be believed.
+
+mod bootstrap;
+mod intraclass;
+mod logit;
+mod mixed;
+mod quadrature;
+#[cfg(test)]
+mod tests;
+
+pub use bootstrap::{Bootstrap, BootstrapMethod, MIN_REPLICATES, bootstrap};
+pub(crate) use bootstrap::{check_replicates, quantile, standard_deviation};
+pub use intraclass::{IccEstimator, IndependenceWarning, Intraclass, independence_warning, intraclass};
+pub use logit::{Coefficient, Correction, RobustLogit, Row, robust_logit};
+pub use mixed::{MixedLogit, mixed_logit};
+
+use crate::{Result, StatsError};
+use serde::{Deserialize, Serialize};
+
+/// One participant's forced choices: how many of `trials` went to the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cluster {
+    /// Choices of the target, ≤ `trials`.
+    pub successes: u64,
+    /// Choices made.
+    pub trials: u64,
+}
+
+impl Cluster {
+    /// The clusters of a survey in which everybody saw the same number of pairs: `counts[k]` participants chose the target k times,
+    /// of `counts.len() − 1` pairs. (12, 14, 6) is the paper's first block.
+    pub fn from_counts(counts: &[u64]) -> Vec<Self> {
+        let trials = counts.len().saturating_sub(1) as u64;
+        (0..)
+            .zip(counts)
+            .flat_map(|(successes, &n)| (0..n).map(move |_| Self { successes, trials }))
+            .collect()
+    }
+}
+
+/// The clusters that have trials, checked.
+fn answered(clusters: &[Cluster]) -> Result<Vec<Cluster>> {
+    for (index, cluster) in clusters.iter().enumerate() {
+        if cluster.successes > cluster.trials {
+            return Err(StatsError::InvalidElement {
+                name: "clusters.successes",
+                index,
+                value: cluster.successes as f64,
+                rule: "must not exceed trials",
+            });
+        }
+    }
+    Ok(clusters.iter().copied().filter(|c| c.trials > 0).collect())
+}
