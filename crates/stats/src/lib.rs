@@ -7,10 +7,6 @@
 //! | [`descriptive`] | mean, variance, autocorrelation, one-way analysis of variance |
 //! | [`inference`] | tests, intervals, effect sizes, equivalence, Bayes factor, corrections, power |
 //! | [`clustered`] | choices of participants × pairs: intraclass correlation, bootstrap, robust and mixed logit |
-//! | [`pairwise`] | Bradley–Terry and Thurstone scaling in JOD, circular triads, odd observers |
-//! | [`psychometric`] | psychometric functions: maximum likelihood, posterior, goodness of fit |
-//! | [`screening`] | preregistered exclusion rules |
-//! | [`simulate`] | simulated observers: power, precision, coverage |
 //! | [`random`] | the seeded generator behind every resampling |
 //!
 //! Invalid input is an `Err` ([`StatsError`]) that names the field, the value and the rule. NaN is always invalid
@@ -26,10 +22,6 @@ pub mod inference;
 mod linalg;
 mod normal;
 mod optimise;
-pub mod pairwise;
-pub mod psychometric;
 pub mod random;
-pub mod screening;
-pub mod simulate;
 
 pub use error::{Result, StatsError};

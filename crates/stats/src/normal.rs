@@ -1,33 +1,28 @@
-//! The normal and reference distributions the fits use, behind one import.
+//! The normal and reference distributions the fits use, for arguments already checked.
 
-use statrs::distribution::{ChiSquared, Continuous, ContinuousCDF, Normal, StudentsT};
+use crate::distributions::normal;
+use crate::distributions::student_t::StudentT;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// φ(x).
-pub(crate) fn pdf(x: f64) -> f64 {
-    Normal::standard().pdf(x)
-}
+pub(crate) use normal::{inverse as quantile, lower as cdf};
 
-/// Φ(x).
-pub(crate) fn cdf(x: f64) -> f64 {
-    Normal::standard().cdf(x)
-}
-
-/// Φ⁻¹(p) for p in (0, 1).
-pub(crate) fn quantile(p: f64) -> f64 {
-    Normal::standard().inverse_cdf(p)
-}
-
-/// P(χ² > x) with `df` degrees of freedom.
+/// P(χ² > x) with `df` > 0 degrees of freedom; 1 for df = 0.
 pub(crate) fn chi_squared_sf(x: f64, df: f64) -> f64 {
+    if df == 0.0 || x <= 0.0 {
+        return 1.0;
+    }
+    if df == 1.0 {
+        return 2.0 * cdf(-x.sqrt());
+    }
     ChiSquared::new(df).map_or(f64::NAN, |d| d.sf(x))
 }
 
-/// The p-quantile of Student's t.
+/// The p-quantile of Student's t, for p in [0, 1] and df ≥ 1.
 pub(crate) fn t_quantile(p: f64, df: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, df).map_or(f64::NAN, |d| d.inverse_cdf(p))
+    StudentT::new(df).and_then(|t| t.quantile(p)).unwrap_or(f64::NAN)
 }
 
 /// P(|t| > |x|).
 pub(crate) fn t_two_sided(x: f64, df: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, df).map_or(f64::NAN, |d| 2.0 * d.sf(x.abs()))
+    StudentT::new(df).and_then(|t| t.two_sided(x)).unwrap_or(f64::NAN)
 }

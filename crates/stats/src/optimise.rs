@@ -16,7 +16,6 @@ pub(crate) struct Maximum {
     pub value: f64,
     /// Minus the Hessian there (p × p), for standard errors.
     pub curvature: Vec<f64>,
-    pub iterations: usize,
 }
 
 const ITERATIONS: usize = 1000;
@@ -37,7 +36,7 @@ pub(crate) fn maximise(
     if !here.value.is_finite() {
         return None;
     }
-    for iteration in 0..ITERATIONS {
+    for _ in 0..ITERATIONS {
         let free: Vec<usize> = (0..p)
             .filter(|&i| {
                 bounds.get(i).is_none_or(|&(low, high)| {
@@ -67,24 +66,14 @@ pub(crate) fn maximise(
         let Some((next, there)) = moved else {
             // No uphill step is left: the maximum to rounding, if the step itself was negligible.
             let size = relative_step(&at, &step);
-            return (size < 1e-7).then_some(Maximum {
-                at,
-                value: here.value,
-                curvature: here.curvature,
-                iterations: iteration,
-            });
+            return (size < 1e-7).then_some(Maximum { at, value: here.value, curvature: here.curvature });
         };
         let change: Vec<f64> = (0..p).map(|i| next[i] - at[i]).collect();
         let done = relative_step(&next, &change) <= TOLERANCE;
         at = next;
         here = there;
         if done {
-            return Some(Maximum {
-                at,
-                value: here.value,
-                curvature: here.curvature,
-                iterations: iteration + 1,
-            });
+            return Some(Maximum { at, value: here.value, curvature: here.curvature });
         }
     }
     None

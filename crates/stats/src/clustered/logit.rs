@@ -171,7 +171,7 @@ pub(super) fn checked(rows: &[Row]) -> Result<(Vec<Row>, usize)> {
                 second_len: row.x.len(),
             });
         }
-        if let Some(&value) = row.x.iter().find(|x| !(x.abs() <= 1e12)) {
+        if let Some(&value) = row.x.iter().find(|x| x.is_nan() || x.abs() > 1e12) {
             let rule = "must be within ±1e12";
             return Err(StatsError::InvalidElement { name: "rows.x", index, value, rule });
         }
