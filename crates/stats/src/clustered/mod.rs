@@ -9,7 +9,6 @@ mod bootstrap;
 mod intraclass;
 mod logit;
 mod mixed;
-mod quadrature;
 #[cfg(test)]
 mod tests;
 
