@@ -1,3 +1,25 @@
 //! What is drawn: a scene file becomes a [`Scene`], and a scene at one instant a [`Theatre`].
+//!
+//! Reading is strict and never stops at the first problem: [`SceneErrors`] holds all of them, each with file, field,
+//! value and rule. Input may be hostile; [`limits`] says how large a scene may be.
+
+mod assets;
+mod colour;
+mod fields;
+pub mod limits;
+mod load;
+mod problem;
+mod puppet;
+mod read;
+mod scene;
+mod staging;
 pub mod theatre;
+mod timeline;
+mod weave;
+
+pub use assets::{Assets, DirAssets};
+pub use colour::srgb_to_linear;
+pub use problem::{Problem, SceneErrors};
+pub use scene::Scene;
 pub use theatre::*;
+pub use timeline::Timeline;

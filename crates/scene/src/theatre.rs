@@ -150,6 +150,22 @@ pub struct Plane {
     pub tilt_deg: [f64; 2],
 }
 
+impl Plane {
+    /// The point of the plane that is `u_m` to the right of the grid's centre and `v_m` above it.
+    pub fn point_m(&self, u_m: f64, v_m: f64) -> DVec3 {
+        let [(sin_x, cos_x), (sin_y, cos_y)] = self.tilt_deg.map(|deg| deg.to_radians().sin_cos());
+        // R_y · R_x · (u, v, 0)
+        let (y, z) = (v_m * cos_x, v_m * sin_x);
+        self.centre_m + DVec3::new(u_m * cos_y + z * sin_y, y, z * cos_y - u_m * sin_y)
+    }
+
+    /// The grid's corners: top left, top right, bottom right, bottom left as the audience sees an untilted plane.
+    pub fn corners_m(&self) -> [DVec3; 4] {
+        let [u, v] = self.size_m.map(|s| 0.5 * s);
+        [[-u, v], [u, v], [u, -v], [-u, -v]].map(|[u, v]| self.point_m(u, v))
+    }
+}
+
 /// Quantised transmittance: the truth for every technique.
 #[derive(Debug)]
 pub struct Mask {

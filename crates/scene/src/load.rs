@@ -1,0 +1,61 @@
+//! The files that a scene names, read once each.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::rc::Rc;
+
+use crate::assets::{Assets, resolve};
+use crate::problem::Problem;
+use crate::read::Node;
+
+/// Reads and remembers files, and collects what is wrong with them.
+pub(crate) struct Loader<'a> {
+    assets: &'a dyn Assets,
+    /// What messages put before a path from the root.
+    prefix: String,
+    files: RefCell<BTreeMap<String, Rc<[u8]>>>,
+    pub problems: &'a RefCell<Vec<Problem>>,
+}
+
+impl<'a> Loader<'a> {
+    /// `label` is how the caller calls the scene file, `name` its path from the root.
+    pub fn new(assets: &'a dyn Assets, label: &str, name: &str, problems: &'a RefCell<Vec<Problem>>) -> Self {
+        let prefix = label.strip_suffix(name).unwrap_or("").to_owned();
+        Self { assets, prefix, files: RefCell::default(), problems }
+    }
+
+    /// How messages call a file.
+    pub fn label(&self, path: &str) -> String {
+        format!("{}{path}", self.prefix)
+    }
+
+    /// The file that `node` names, relative to the file `from`: its path from the root and its bytes, at most `most`.
+    pub fn read(&self, from: &str, node: &Node, most: usize) -> Option<(String, Rc<[u8]>)> {
+        let path = match resolve(from, node.string()?) {
+            Ok(path) => path,
+            Err(rule) => return node.refuse(rule),
+        };
+        let known = self.files.borrow().get(&path).cloned();
+        let bytes: Rc<[u8]> = match known {
+            Some(bytes) => bytes,
+            None => match self.assets.read(&path) {
+                Ok(bytes) => bytes.into(),
+                Err(e) if e.kind() == ErrorKind::NotFound => {
+                    return node.refuse(format!("there is no file {}", self.label(&path)));
+                }
+                Err(e) => return node.refuse(format!("{} can't be read: {e}", self.label(&path))),
+            },
+        };
+        if bytes.len() > most {
+            return node.refuse(format!("{} has more than {most} bytes", self.label(&path)));
+        }
+        self.files.borrow_mut().insert(path.clone(), bytes.clone());
+        Some((path, bytes))
+    }
+
+    /// Every file that was read, by its path from the root.
+    pub fn files(self) -> BTreeMap<String, Rc<[u8]>> {
+        self.files.into_inner()
+    }
+}

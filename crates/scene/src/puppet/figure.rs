@@ -1,0 +1,194 @@
+//! A puppet ready to be posed: its parts' textures on one lattice, and the masks made of them.
+
+use std::sync::Arc;
+
+use super::compose::{Code, Placed, Plate, compose};
+use super::grid::{Lattice, Rect, Rigid, Texture};
+use super::manifest::Part;
+use crate::theatre::{Mask, Texels};
+
+/// Bytes of masks that a puppet keeps for poses that come again, as in a loop.
+const KEPT_BYTES: usize = 64 << 20;
+
+/// How a figure is posed: degrees by part, then the whole figure's rotation about its centre.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Pose {
+    pub parts_deg: Vec<f64>,
+    pub rotate_deg: f64,
+}
+
+/// Parts, their textures and the masks made of them.
+#[derive(Debug)]
+pub(crate) struct Figure {
+    lattice: Lattice,
+    /// Pivots in lattice coordinates.
+    parts: Vec<Joint>,
+    textures: Vec<Texture>,
+    channels: usize,
+    bits: u32,
+    /// Set by [`Figure::settle`]: which parts may move, and the product of those that don't.
+    moving: Vec<bool>,
+    plate: Option<Arc<Plate>>,
+    kept: Vec<(Pose, Rect, Arc<Mask>)>,
+}
+
+#[derive(Clone, Debug)]
+struct Joint {
+    parent: Option<usize>,
+    pivot: [f64; 2],
+}
+
+impl Figure {
+    /// `textures` has one texture a part, in drawing order. A part without a pivot turns about the figure's centre.
+    pub fn new(
+        lattice: Lattice,
+        origin: [f64; 2],
+        parts: &[Part],
+        textures: Vec<Texture>,
+        bits: u32,
+    ) -> Self {
+        let joints = parts.iter().map(|part| Joint {
+            parent: part.parent,
+            pivot: part.pivot.map_or(lattice.centre(), |[x, y]| lattice.at([x - origin[0], y - origin[1]])),
+        });
+        let channels = textures.iter().map(|t| t.channels).max().unwrap_or(1);
+        let moving = vec![true; textures.len()];
+        Self {
+            lattice,
+            parts: joints.collect(),
+            textures,
+            channels,
+            bits,
+            moving,
+            plate: None,
+            kept: Vec::new(),
+        }
+    }
+
+    /// 1 or 3.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// Which parts move when those of `posed` do: they and all that hangs on them.
+    pub fn followers(&self, posed: &[bool]) -> Vec<bool> {
+        (0..self.textures.len())
+            .map(|part| self.chain(part).any(|p| posed.get(p).copied().unwrap_or(false)))
+            .collect()
+    }
+
+    /// A part, its parent, its parent's parent …
+    fn chain(&self, part: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(part), |&p| self.parts.get(p)?.parent)
+    }
+
+    /// Where a pose puts a part.
+    fn motion(&self, part: usize, pose: &Pose) -> Rigid {
+        let mut motion = Rigid::IDENTITY;
+        for p in self.chain(part) {
+            let degrees = pose.parts_deg.get(p).copied().unwrap_or(0.0);
+            if let Some(joint) = self.parts.get(p) {
+                motion = Rigid::turn(joint.pivot, degrees).after(&motion);
+            }
+        }
+        Rigid::turn(self.lattice.centre(), pose.rotate_deg).after(&motion)
+    }
+
+    /// The grid of a pose: the rest grid and every moved part, or the parts alone when the whole figure is turned.
+    pub fn extent(&self, pose: &Pose) -> Rect {
+        let rest = Rect::of_size(self.lattice.columns, self.lattice.rows);
+        let parts = (0..self.textures.len())
+            .map(|part| self.motion(part, pose).bounds(self.textures[part].rect))
+            .fold(Rect::EMPTY, Rect::union);
+        let turned = Rigid::turn([0.0; 2], pose.rotate_deg) != Rigid::IDENTITY;
+        if turned && !parts.is_empty() { parts } else { rest.union(parts) }
+    }
+
+    /// Centre of a pose's grid from the figure's centre, u right and v up, and its full size; in texels.
+    pub fn placement(&self, extent: Rect) -> ([f64; 2], [f64; 2]) {
+        let [cx, cy] = self.lattice.centre();
+        let middle = |a: i64, b: i64| 0.5 * (a + b) as f64;
+        let centre = [middle(extent.x0, extent.x1) - cx, cy - middle(extent.y0, extent.y1)];
+        (centre, [extent.width() as f64, extent.height() as f64])
+    }
+
+    /// Fixes which parts may move from now on and multiplies the others, as `pose` has them, once and for all.
+    pub fn settle(&mut self, moving: Vec<bool>, pose: &Pose) {
+        self.kept.clear();
+        self.moving = moving;
+        let still: Vec<usize> = (0..self.textures.len()).filter(|&p| !self.moving[p]).collect();
+        let rect = still
+            .iter()
+            .map(|&p| self.motion(p, pose).bounds(self.textures[p].rect))
+            .fold(Rect::EMPTY, Rect::union);
+        self.plate = None;
+        if rect.is_empty() {
+            return;
+        }
+        let mut light = vec![1.0f32; rect.area() * self.channels];
+        for &p in &still {
+            let motion = self.motion(p, pose);
+            super::compose::multiply(rect, &Placed { texture: &self.textures[p], motion }, &mut light);
+        }
+        let codes = match self.bits {
+            16 => Texels::U16(light.iter().map(|&l| u16::nearest(l)).collect()),
+            _ => Texels::U8(light.iter().map(|&l| u8::nearest(l)).collect()),
+        };
+        self.plate = Some(Arc::new(Plate { rect, transmittance: light, codes }));
+        for p in still {
+            // Multiplied into the plate; the bounds are still needed for the extent.
+            self.textures[p].opacity = Vec::new();
+        }
+    }
+
+    /// The mask of a pose and the texels that it covers. Equal poses give the same mask while it is remembered.
+    pub fn mask(&mut self, pose: &Pose) -> (Rect, Arc<Mask>) {
+        if let Some(at) = self.kept.iter().position(|(kept, ..)| kept == pose) {
+            let found = self.kept.remove(at);
+            let answer = (found.1, found.2.clone());
+            self.kept.push(found);
+            return answer;
+        }
+        let extent = self.extent(pose);
+        let spent = self.make_room(extent.area() * self.channels * (self.bits as usize / 8));
+        let parts: Vec<Placed> = (0..self.textures.len())
+            .filter(|&p| self.moving[p])
+            .map(|p| Placed { texture: &self.textures[p], motion: self.motion(p, pose) })
+            .collect();
+        let plate = self.plate.as_deref();
+        let texels = if self.bits == 16 {
+            let mut codes = if let Some(Texels::U16(codes)) = spent { codes } else { Vec::new() };
+            let plate = plate.and_then(|p| match &p.codes {
+                Texels::U16(codes) => Some((p.rect, &p.transmittance[..], &codes[..])),
+                Texels::U8(_) => None,
+            });
+            compose(extent, self.channels, plate, &parts, &mut codes);
+            Texels::U16(codes)
+        } else {
+            let mut codes = if let Some(Texels::U8(codes)) = spent { codes } else { Vec::new() };
+            let plate = plate.and_then(|p| match &p.codes {
+                Texels::U8(codes) => Some((p.rect, &p.transmittance[..], &codes[..])),
+                Texels::U16(_) => None,
+            });
+            compose(extent, self.channels, plate, &parts, &mut codes);
+            Texels::U8(codes)
+        };
+        let mask = Arc::new(Mask::new(extent.width(), extent.height(), self.channels, texels));
+        self.kept.push((pose.clone(), extent, mask.clone()));
+        (extent, mask)
+    }
+
+    /// Forgets the masks that were not asked for longest until `bytes` more fit; the texels of one that
+    /// nobody holds any more are handed back for reuse.
+    fn make_room(&mut self, bytes: usize) -> Option<Texels> {
+        let size = |mask: &Mask| mask.width * mask.height * mask.channels * (self.bits as usize / 8);
+        let mut held: usize = self.kept.iter().map(|(.., mask)| size(mask)).sum();
+        let mut spent = None;
+        while held + bytes > KEPT_BYTES && self.kept.len() > 1 {
+            let (.., mask) = self.kept.remove(0);
+            held -= size(&mask);
+            spent = Arc::into_inner(mask).map(|mask| mask.texels).or(spent);
+        }
+        spent
+    }
+}

@@ -1,0 +1,112 @@
+//! The puppet manifest: which groups of an SVG are parts, and how they hang together.
+
+use std::collections::HashSet;
+
+use crate::limits;
+use crate::read::{Node, did_you_mean, list};
+
+/// One part as the manifest has it, in drawing order.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Part {
+    /// The SVG group's id.
+    pub id: String,
+    /// Index of the part that it hangs on.
+    pub parent: Option<usize>,
+    /// What it turns about, SVG user units; a part without one can't be posed.
+    pub pivot: Option<[f64; 2]>,
+    /// The least and the greatest pose.
+    pub limits_deg: Option<[f64; 2]>,
+}
+
+/// A manifest's image path and parts.
+pub(crate) struct Manifest<'a> {
+    /// The node of the image's path, for messages.
+    pub image: Node<'a>,
+    pub parts: Vec<Part>,
+}
+
+impl<'a> Manifest<'a> {
+    pub fn read(root: &Node<'a>) -> Option<Self> {
+        let mut fields = root.table()?;
+        for key in ["title", "source", "license"] {
+            fields.get(key).and_then(|n| n.string());
+        }
+        let image =
+            fields.need("image", "the path of the puppet's SVG or PNG", |n| n.string().map(|_| n.clone()));
+        let parts = fields.optional("parts", Vec::new(), read_parts);
+        fields.done();
+        Some(Self { image: image?, parts: parts? })
+    }
+}
+
+fn read_parts(node: &Node) -> Option<Vec<Part>> {
+    let items = node.array(limits::PARTS)?;
+    let raw: Vec<_> = items.iter().map(read_part).collect();
+    let raw: Vec<_> = raw.into_iter().collect::<Option<Vec<_>>>()?;
+    let ids: Vec<String> = raw.iter().map(|r| r.0.clone()).collect();
+    let mut sound = true;
+    let mut seen = HashSet::new();
+    let mut parts = Vec::new();
+    for ((id, parent, pivot, limits_deg), item) in raw.into_iter().zip(&items) {
+        if !seen.insert(id.clone()) {
+            item.refuse::<()>(format!("a part's id must be unique, and there are two {id:?}"));
+            sound = false;
+        }
+        let parent = match parent {
+            None => None,
+            Some(node) => {
+                let name = node.string()?;
+                let found = ids.iter().position(|i| i == name);
+                if found.is_none() {
+                    node.refuse::<()>(format!(
+                        "no such part{}; parts are {}",
+                        did_you_mean(name, &ids),
+                        list(&ids)
+                    ));
+                    sound = false;
+                }
+                found
+            }
+        };
+        parts.push(Part { id, parent, pivot, limits_deg });
+    }
+    for (i, item) in items.iter().enumerate() {
+        // A chain longer than there are parts goes round in a circle.
+        let chain = std::iter::successors(Some(i), |&p| parts.get(p)?.parent).take(parts.len() + 1).count();
+        if sound && chain > parts.len() {
+            item.refuse::<()>(format!("part {:?} must not hang on itself", parts[i].id));
+            sound = false;
+        }
+    }
+    sound.then_some(parts)
+}
+
+type RawPart<'a> = (String, Option<Node<'a>>, Option<[f64; 2]>, Option<[f64; 2]>);
+
+fn read_part<'a>(node: &Node<'a>) -> Option<RawPart<'a>> {
+    let mut fields = node.table()?;
+    let id = fields.need("id", "the id of the SVG group", |n| {
+        let id = n.string()?;
+        let sound =
+            !id.is_empty() && id.len() <= 100 && id.chars().all(|c| c.is_alphanumeric() || "_-".contains(c));
+        if sound { Some(id.to_owned()) } else { n.refuse("an id has 1 to 100 letters, digits, _ or -") }
+    });
+    let parent = fields.get("parent");
+    let pivot = fields.optional("pivot", None, |n| {
+        n.items(|x| x.number_in(-1e6..=1e6, "a pivot is given in SVG user units, at most 1e6")).map(Some)
+    });
+    let limits_deg = fields.optional("limits_deg", None, |n| {
+        let limits: [f64; 2] =
+            n.items(|x| x.number_in(-360.0..=360.0, "a limit is between −360 and 360 degrees"))?;
+        if limits[0] <= 0.0 && limits[1] >= 0.0 {
+            Some(Some(limits))
+        } else {
+            n.refuse("limits are [least, greatest] and include the rest pose, 0")
+        }
+    });
+    fields.done();
+    if let Some(parent) = &parent {
+        parent.string()?;
+    }
+    Some((id?, parent, pivot?, limits_deg?))
+}

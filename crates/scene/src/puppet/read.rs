@@ -1,0 +1,206 @@
+//! Reads one `[[puppets]]` entry and the files it names.
+
+use glam::DVec3;
+
+use super::bitmap::Bitmap;
+use super::figure::{Figure, Pose};
+use super::grid::{Lattice, Texture};
+use super::manifest::{Manifest, Part};
+use super::svg::Svg;
+use crate::fields::{length, point};
+use crate::limits;
+use crate::load::Loader;
+use crate::read::{Node, Source, did_you_mean, list};
+use crate::staging::{Puppet, Setting};
+
+/// A puppet as the file has it, with what later messages need.
+pub(crate) struct Entry<'a> {
+    pub node: Node<'a>,
+    pub position: Option<Node<'a>>,
+    pub tilt: Option<Node<'a>>,
+    pub parts: Vec<Part>,
+    pub setting: Setting,
+    pub puppet: Puppet,
+}
+
+enum Drawing {
+    Svg(Svg),
+    Bitmap(Bitmap),
+}
+
+struct Art {
+    drawing: Drawing,
+    parts: Vec<Part>,
+}
+
+pub(crate) fn degrees(node: &Node) -> Option<f64> {
+    node.number_in(-limits::DEGREES..=limits::DEGREES, "an angle is from −1e6 to 1e6 degrees")
+}
+
+pub(crate) fn tilt(node: &Node) -> Option<[f64; 2]> {
+    let rule = "a tilt is between −90 and 90 degrees, without these";
+    node.items(|x| {
+        let tilt = x.number_in(-90.0..=90.0, rule)?;
+        if tilt.abs() < 90.0 { Some(tilt) } else { x.refuse(rule) }
+    })
+}
+
+/// A pose of `part` in degrees, within its limits.
+pub(crate) fn pose_deg(node: &Node, part: &Part) -> Option<f64> {
+    if part.pivot.is_none() {
+        return node
+            .refuse(format!("part {:?} has no pivot in the puppet's manifest to turn about", part.id));
+    }
+    let value = degrees(node)?;
+    match part.limits_deg {
+        Some([least, most]) if !(least..=most).contains(&value) => {
+            node.refuse(format!("part {:?} turns from {least} to {most} degrees", part.id))
+        }
+        _ => Some(value),
+    }
+}
+
+/// The index of the part of that name; refused with the known ones otherwise.
+pub(crate) fn find_part(node: &Node, name: &str, parts: &[Part]) -> Option<usize> {
+    let ids: Vec<&str> = parts.iter().map(|p| p.id.as_str()).collect();
+    match ids.iter().position(|id| *id == name) {
+        Some(index) => Some(index),
+        None if ids.is_empty() => node.refuse("this puppet has no parts: only a puppet manifest names parts"),
+        None => node.refuse(format!("no such part{}; parts are {}", did_you_mean(name, &ids), list(&ids))),
+    }
+}
+
+/// Reads a puppet; `name` is the scene's path from the root.
+pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<Entry<'a>> {
+    let mut fields = node.table()?;
+    let art =
+        fields.need("image", "the path of an SVG, a PNG or a puppet manifest", |n| open(n, name, loader));
+    let height_m = fields.need("height_m", "the puppet's height in metres", length);
+    let mut position = None;
+    let position_m = fields.need("position_m", "the puppet's centre [x, y, z] in metres", |n| {
+        position = Some(n.clone());
+        point(n)
+    });
+    let translucent = fields.optional("translucent", false, |n| n.boolean());
+    let rotate_deg = fields.optional("rotate_deg", 0.0, degrees);
+    let tilt_node = fields.get("tilt_deg");
+    let tilt_deg = tilt_node.as_ref().map_or(Some([0.0; 2]), tilt);
+    let parts = art.as_ref().map(|a| a.parts.as_slice());
+    let pose = fields.optional("pose", vec![0.0; parts.map_or(0, <[Part]>::len)], |n| read_pose(n, parts));
+    let texels = fields.get("texels");
+    let rows = texels.as_ref().map_or(Some(None), |n| {
+        let rule = "a puppet's grid has 64 to 8192 rows";
+        n.integer_in(64..=limits::IMAGE_SIDE as i64, rule).map(|rows| Some(rows as usize))
+    });
+    let bits = fields.optional("bits", 8, |n| {
+        let bits = n.integer()?;
+        if bits == 8 || bits == 16 { Some(bits as u32) } else { n.refuse("a mask has 8 or 16 bits") }
+    });
+    fields.done();
+
+    let (art, height_m, translucent, bits) = (art?, height_m?, translucent?, bits?);
+    let lattice = lattice(node, texels.as_ref().unwrap_or(node), &art, rows?)?;
+    let figure = rasterise(node, &art, lattice, translucent, bits)?;
+    let setting = Setting {
+        position_m: DVec3::from(position_m?),
+        tilt_deg: tilt_deg?,
+        pose: Pose { parts_deg: pose?, rotate_deg: rotate_deg? },
+    };
+    let texel_m = height_m / lattice.rows as f64;
+    let puppet = Puppet { figure, texel_m };
+    Some(Entry { node: node.clone(), position, tilt: tilt_node, parts: art.parts, setting, puppet })
+}
+
+/// `{ part = degrees }`; without a known puppet only the values' types are checked.
+fn read_pose(node: &Node, parts: Option<&[Part]>) -> Option<Vec<f64>> {
+    let entries = node.entries(limits::PARTS)?;
+    let Some(parts) = parts else {
+        entries.iter().for_each(|(_, value)| {
+            degrees(value);
+        });
+        return None;
+    };
+    let mut pose = vec![0.0; parts.len()];
+    let mut sound = true;
+    for (name, value) in entries {
+        match find_part(&value, name, parts).and_then(|p| Some((p, pose_deg(&value, &parts[p])?))) {
+            Some((part, degrees)) => pose[part] = degrees,
+            None => sound = false,
+        }
+    }
+    sound.then_some(pose)
+}
+
+/// Opens an SVG, a PNG or a manifest, told apart by the path's end.
+fn open(node: &Node, from: &str, loader: &Loader) -> Option<Art> {
+    if !node.string()?.to_ascii_lowercase().ends_with(".toml") {
+        return Some(Art { drawing: open_image(node, from, &[], loader)?, parts: Vec::new() });
+    }
+    let (path, bytes) = loader.read(from, node, limits::MANIFEST_BYTES)?;
+    let Ok(text) = std::str::from_utf8(&bytes) else { return node.refuse("is not UTF-8 text") };
+    let label = loader.label(&path);
+    let source = Source::new(&label, text, loader.problems);
+    let table = toml::de::DeValue::Table(source.parse()?.into_inner());
+    let manifest = Manifest::read(&source.root(&table))?;
+    let ids: Vec<String> = manifest.parts.iter().map(|p| p.id.clone()).collect();
+    let drawing = open_image(&manifest.image, &path, &ids, loader)?;
+    if matches!(drawing, Drawing::Bitmap(_)) && !ids.is_empty() {
+        return manifest.image.refuse("a PNG has no groups: parts need an SVG");
+    }
+    Some(Art { drawing, parts: manifest.parts })
+}
+
+fn open_image(node: &Node, from: &str, parts: &[String], loader: &Loader) -> Option<Drawing> {
+    let path = node.string()?.to_ascii_lowercase();
+    if path.ends_with(".svg") {
+        let (_, bytes) = loader.read(from, node, limits::SVG_BYTES)?;
+        let mut refuse = |rule: String| {
+            node.refuse::<()>(rule);
+        };
+        return Svg::open(&bytes, parts, &mut refuse).map(Drawing::Svg);
+    }
+    if path.ends_with(".png") {
+        let (_, bytes) = loader.read(from, node, limits::IMAGE_BYTES)?;
+        return match Bitmap::open(&bytes) {
+            Ok(bitmap) => Some(Drawing::Bitmap(bitmap)),
+            Err(rule) => node.refuse(rule),
+        };
+    }
+    node.refuse("a puppet's image is an .svg, a .png or a .toml puppet manifest")
+}
+
+/// The puppet's grid at rest; `rows` defaults to a PNG's own and to 1024 for an SVG.
+fn lattice(node: &Node, texels: &Node, art: &Art, rows: Option<usize>) -> Option<Lattice> {
+    let (size, own_rows) = match &art.drawing {
+        Drawing::Svg(svg) => (svg.size, 1024),
+        Drawing::Bitmap(bitmap) => (bitmap.size().map(|s| s as f64), bitmap.size()[1]),
+    };
+    let rows = rows.unwrap_or(own_rows);
+    let columns = (size[0] / size[1] * rows as f64).ceil();
+    if columns > limits::IMAGE_SIDE as f64 {
+        let rule = format!("the grid would have {columns} columns; at most {}", limits::IMAGE_SIDE);
+        return texels.refuse(rule);
+    }
+    let lattice = Lattice::new(size, rows);
+    let all = lattice.columns * lattice.rows * art.parts.len().max(1);
+    if all > limits::PART_TEXELS {
+        let rule = format!("{} parts of {} × {rows} texels are too many", art.parts.len(), lattice.columns);
+        return node
+            .refuse(format!("{rule}; all parts together have at most {} texels", limits::PART_TEXELS));
+    }
+    Some(lattice)
+}
+
+fn rasterise(node: &Node, art: &Art, lattice: Lattice, translucent: bool, bits: u32) -> Option<Figure> {
+    let (origin, textures): ([f64; 2], Vec<Texture>) = match &art.drawing {
+        Drawing::Svg(svg) => {
+            let parts = 0..art.parts.len().max(1);
+            (svg.origin, parts.map(|part| svg.texture(part, &lattice, translucent)).collect())
+        }
+        Drawing::Bitmap(bitmap) => ([0.0; 2], vec![bitmap.texture(&lattice, translucent)]),
+    };
+    if textures.iter().all(|t| t.rect.is_empty()) {
+        return node.refuse("the image draws nothing: it is clear everywhere");
+    }
+    Some(Figure::new(lattice, origin, &art.parts, textures, bits))
+}

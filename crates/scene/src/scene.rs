@@ -1,0 +1,336 @@
+//! A scene: read, checked as a whole, and staged at any instant.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use sha2::{Digest, Sha256};
+use toml::de::DeValue;
+
+use crate::assets::{Assets, DirAssets, read_file, root_of};
+use crate::fields;
+use crate::limits;
+use crate::load::Loader;
+use crate::problem::{Problem, SceneErrors};
+use crate::puppet::read::{Entry, degrees, find_part, pose_deg, tilt};
+use crate::read::{Fields, Node, Source, canonical};
+use crate::staging::{Misplaced, Puppet, Staging};
+use crate::theatre::{Albedo, Ambient, Emitter, Exposure, Mask, Texels, Theatre};
+use crate::timeline::{self, Driven, Target, Timeline};
+
+/// A valid scene: what is drawn, still or moving.
+///
+/// Every theatre it gives keeps the invariants that techniques rely on: everything is finite, sizes are positive, and
+/// every corner of every plane lies strictly between lamp and screen (for a timeline: at every frame and key).
+#[derive(Debug)]
+pub struct Scene {
+    sha256: String,
+    puppets: Vec<Puppet>,
+    staging: Staging,
+    timeline: Option<Timeline>,
+    still: Theatre,
+}
+
+impl Scene {
+    /// Reads a scene file. The files that it names lie below the scene's folder, or below that folder's parent when
+    /// the folder is called `scenes`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scene and the files that it names.
+    pub fn from_path(path: &Path) -> Result<Scene, SceneErrors> {
+        let label = path.to_string_lossy();
+        let refuse = |rule: String| {
+            let problem = Problem { file: label.to_string(), field: String::new(), value: None, rule };
+            SceneErrors::new(vec![problem])
+        };
+        let bytes =
+            read_file(path, limits::SCENE_BYTES).map_err(|e| refuse(format!("can't be read: {e}")))?;
+        let text = String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text".to_owned()))?;
+        let (root, name) = root_of(path);
+        read(&label, &name, &text, &DirAssets::new(root))
+    }
+
+    /// Reads a scene from text. `name` is the scene's path from the assets' root (`scenes/arjuna.toml`): paths in the
+    /// scene are relative to it, and messages use it.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scene and the files that it names.
+    pub fn parse(name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, SceneErrors> {
+        read(name, name, toml, assets)
+    }
+
+    /// SHA-256, in hexadecimal, over the scene's values (not its comments or layout) and every file that it names.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
+
+    /// The scene as written, without its timeline.
+    pub fn still(&self) -> Theatre {
+        self.still.clone()
+    }
+
+    /// How the scene moves, if it does.
+    pub fn timeline(&self) -> Option<&Timeline> {
+        self.timeline.as_ref()
+    }
+
+    /// The scene at an instant of its timeline; as written when there is none. A puppet whose pose and rotation are as
+    /// in a recent call keeps its mask (the same [`Arc`], the same [`Mask::id`]).
+    pub fn theatre_at(&mut self, time_s: f64) -> Theatre {
+        let Some(timeline) = &self.timeline else { return self.still() };
+        let staging = self.staging.at(timeline, timeline.instant_s(time_s));
+        let planes = self.puppets.iter_mut().zip(&staging.puppets).map(|(p, s)| p.pose(s)).collect();
+        let mut theatre = Theatre { planes, ..self.still.clone() };
+        theatre.lamp.position_m = staging.lamp_m;
+        theatre
+    }
+}
+
+/// `label` is how messages call the file, `name` its path from the assets' root.
+fn read(label: &str, name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, SceneErrors> {
+    let problems = RefCell::default();
+    let loader = Loader::new(assets, label, name, &problems);
+    let source = Source::new(label, toml, &problems);
+    let scene = read_scene(&source, toml, name, loader);
+    let problems = problems.take();
+    match scene {
+        Some(scene) if problems.is_empty() => Ok(scene),
+        _ => Err(SceneErrors::new(problems)),
+    }
+}
+
+fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option<Scene> {
+    if toml.len() > limits::SCENE_BYTES {
+        source.problem(
+            "",
+            None,
+            format!("has {} bytes; a scene has at most {}", toml.len(), limits::SCENE_BYTES),
+        );
+        return None;
+    }
+    let table = DeValue::Table(source.parse()?.into_inner());
+    let root = source.root(&table);
+    let mut sections = root.table()?;
+    let screen = sections.need("screen", "the [screen] section", |n| fields::screen(n, name, &loader));
+    let lamp = sections.need("lamp", "the [lamp] section", fields::lamp);
+    let ambient = sections.optional("ambient", Ambient::None, fields::ambient);
+    let mut white = None;
+    let exposure = sections.optional("exposure", Exposure::Auto, |n| {
+        white = Some(n.clone());
+        fields::exposure(n)
+    });
+    let entries = read_puppets(&mut sections, name, &loader);
+    let timeline = match sections.get("timeline") {
+        Some(node) => read_timeline(&node, &entries).map(Some),
+        None => Some(None),
+    };
+    sections.done();
+
+    if let (Some(screen), Some(lamp), Some(ambient), Some(Exposure::Auto)) =
+        (&screen, &lamp, &ambient, exposure)
+    {
+        check_light(&screen.albedo, &lamp.emitters, ambient, white.as_ref(), &root);
+    }
+    let lamp = lamp?;
+    let entries: Vec<Entry> = entries.into_iter().collect::<Option<_>>()?;
+    let timeline = timeline?;
+    let settings = entries.iter().map(|e| e.setting.clone()).collect();
+    let staging = Staging { lamp_m: lamp.position_m, puppets: settings };
+    check_still(&staging, &entries, &root);
+    if let Some(timeline) = &timeline {
+        check_timeline(timeline, &staging, &entries, source);
+    }
+    if !loader.problems.borrow().is_empty() {
+        return None;
+    }
+
+    let (screen, ambient, exposure) = (screen?, ambient?, exposure?);
+    let mut puppets: Vec<Puppet> = entries.into_iter().map(|e| e.puppet).collect();
+    for (i, puppet) in puppets.iter_mut().enumerate() {
+        let moving = moving_parts(timeline.as_ref(), i, puppet);
+        puppet.figure.settle(moving, &staging.puppets[i].pose);
+    }
+    let planes = puppets.iter_mut().zip(&staging.puppets).map(|(p, s)| p.pose(s)).collect();
+    let still = Theatre { screen, lamp, ambient, planes, exposure };
+    let sha256 = hash(&canonical(&table), loader.files());
+    Some(Scene { sha256, puppets, staging, timeline, still })
+}
+
+fn read_puppets<'a>(sections: &mut Fields<'a>, name: &str, loader: &Loader) -> Vec<Option<Entry<'a>>> {
+    let Some(node) = sections.get("puppets") else { return Vec::new() };
+    let Some(items) = node.array(limits::PUPPETS) else { return vec![None] };
+    items.iter().map(|item| crate::puppet::read::read(item, name, loader)).collect()
+}
+
+/// Light that `white = "auto"` can be taken from.
+fn check_light(albedo: &Albedo, emitters: &[Emitter], ambient: &Ambient, white: Option<&Node>, root: &Node) {
+    let dome = if let Ambient::Dome { radiance } = ambient { *radiance } else { [0.0; 3] };
+    let lit = |c: usize| dome[c] > 0.0 || emitters.iter().any(|e| e.radiance[c] > 0.0);
+    let seen = |c: usize| match albedo {
+        Albedo::Uniform(rgb) => rgb[c] > 0.0,
+        Albedo::Image(image) => image.rgb.iter().any(|p| p[c] > 0.0),
+    };
+    if !(0..3).any(|c| lit(c) && seen(c)) {
+        let rule = "white = \"auto\" needs light: lamp or cloth are black in every channel";
+        white.unwrap_or(root).refuse::<()>(rule);
+    }
+}
+
+/// Which parts of puppet `i` the timeline may move.
+fn moving_parts(timeline: Option<&Timeline>, i: usize, puppet: &Puppet) -> Vec<bool> {
+    let tracks = timeline.map_or(&[][..], |t| &t.tracks);
+    let turned = tracks.iter().any(|t| t.target == Target::Rotate(i));
+    let posed: Vec<bool> = (0..limits::PARTS)
+        .map(|part| turned || tracks.iter().any(|t| t.target == Target::Pose(i, part)))
+        .collect();
+    puppet.figure.followers(&posed)
+}
+
+/// A mask for planes whose corners alone are asked for.
+fn nothing() -> Arc<Mask> {
+    Arc::new(Mask::new(1, 1, 1, Texels::U8(vec![255])))
+}
+
+/// A number as messages write it.
+fn shown(number: f64) -> String {
+    format!("{number}").replace('-', "−")
+}
+
+fn rule_of(misplaced: &Misplaced, lamp_z_m: f64) -> String {
+    let between = format!("backstage, between lamp ({}) and screen (0)", shown(lamp_z_m));
+    match misplaced {
+        Misplaced::Centre(_) => format!("a puppet hangs {between}"),
+        Misplaced::Corner(z) => {
+            format!("a corner of the puppet's grid is at z = {}; every corner hangs {between}", shown(*z))
+        }
+        Misplaced::Grid([w, h]) => format!(
+            "the posed grid has {w} × {h} texels; at most {} a side and {} in all",
+            limits::GRID_SIDE,
+            limits::SCENE_TEXELS
+        ),
+    }
+}
+
+fn check_still(staging: &Staging, entries: &[Entry], root: &Node) {
+    let nothing = nothing();
+    let mut texels = 0usize;
+    for (setting, entry) in staging.puppets.iter().zip(entries) {
+        match entry.puppet.check(setting, staging.lamp_m.z, &nothing) {
+            Ok(values) => texels = texels.saturating_add(values),
+            Err(misplaced) => {
+                let rule = rule_of(&misplaced, staging.lamp_m.z);
+                let z = entry.position.as_ref().and_then(|n| n.array(3)?.pop());
+                let node = match misplaced {
+                    Misplaced::Centre(_) => z.as_ref(),
+                    Misplaced::Corner(_) => entry.tilt.as_ref(),
+                    Misplaced::Grid(_) => None,
+                };
+                node.unwrap_or(&entry.node).refuse::<()>(rule);
+            }
+        }
+    }
+    if texels > limits::SCENE_TEXELS {
+        root.refuse::<()>(format!(
+            "the puppets have {texels} texels in all; at most {}",
+            limits::SCENE_TEXELS
+        ));
+    }
+}
+
+fn check_timeline(timeline: &Timeline, staging: &Staging, entries: &[Entry], source: &Source) {
+    let frames = timeline.frame_count();
+    let parts: usize = entries.iter().map(|e| e.parts.len() + 1).sum();
+    let keys = timeline.tracks.iter().map(|t| t.keys.len()).sum::<usize>();
+    if (frames + keys).saturating_mul(parts + timeline.tracks.len()) > 20_000_000 {
+        let rule =
+            format!("{frames} frames and {keys} keys of {parts} parts are too many; shorten the timeline");
+        return source.problem("timeline", None, rule);
+    }
+    let nothing = nothing();
+    let key_times = timeline.tracks.iter().flat_map(|t| t.keys.iter().map(|(t, _)| *t));
+    let frame_times = (0..frames).map(|frame| timeline.instant_s(timeline.frame_time_s(frame)));
+    let mut refused = vec![false; entries.len()];
+    for instant in frame_times.chain(key_times) {
+        let staging = staging.at(timeline, instant);
+        let mut texels = 0usize;
+        for (i, (setting, entry)) in staging.puppets.iter().zip(entries).enumerate() {
+            match entry.puppet.check(setting, staging.lamp_m.z, &nothing) {
+                Ok(values) => texels = texels.saturating_add(values),
+                Err(_) if refused[i] => {}
+                Err(misplaced) => {
+                    refused[i] = true;
+                    let at = match misplaced {
+                        Misplaced::Centre(z) => format!("puppets[{i}].position_m[2] is {}", shown(z)),
+                        _ => format!("puppets[{i}] is out of place"),
+                    };
+                    let rule = rule_of(&misplaced, staging.lamp_m.z);
+                    source.problem("timeline", None, format!("at {instant} s {at}: {rule}"));
+                }
+            }
+        }
+        if texels > limits::SCENE_TEXELS {
+            let most = limits::SCENE_TEXELS;
+            let rule = format!("at {instant} s the puppets have {texels} texels in all; at most {most}");
+            return source.problem("timeline", None, rule);
+        }
+    }
+}
+
+fn read_timeline(node: &Node, entries: &[Option<Entry>]) -> Option<Timeline> {
+    timeline::read(node, &|n| target(n, entries))
+}
+
+/// What a track's target names, and how its values are read.
+fn target<'r>(node: &Node, entries: &'r [Option<Entry>]) -> Option<Driven<'r>> {
+    let name = node.string()?;
+    if name == "lamp.position_m" {
+        return Some((
+            Target::LampPosition,
+            Box::new(|n| fields::lamp_position(n).map(|p| p.to_array().to_vec())),
+        ));
+    }
+    let known =
+        "targets are lamp.position_m and puppets[i].position_m, .rotate_deg, .tilt_deg and .pose.<part>";
+    let Some((index, field)) = name.strip_prefix("puppets[").and_then(|rest| rest.split_once("].")) else {
+        return node.refuse(known);
+    };
+    let Some(i) = index.parse::<usize>().ok().filter(|i| *i < entries.len()) else {
+        return node
+            .refuse(format!("there is no puppets[{index:.20}]; the scene has {} puppets", entries.len()));
+    };
+    let entry = entries[i].as_ref();
+    match field {
+        "position_m" => Some((Target::Position(i), Box::new(|n| fields::point(n).map(|p| p.to_vec())))),
+        "rotate_deg" => Some((Target::Rotate(i), Box::new(|n| degrees(n).map(|d| vec![d])))),
+        "tilt_deg" => Some((Target::Tilt(i), Box::new(|n| tilt(n).map(|t| t.to_vec())))),
+        _ => {
+            let Some(part) = field.strip_prefix("pose.") else { return node.refuse(known) };
+            let parts = entry?.parts.as_slice(); // a puppet that was refused has its own problems
+            let part = find_part(node, part, parts)?;
+            if parts[part].pivot.is_none() {
+                let id = &parts[part].id;
+                return node
+                    .refuse(format!("part {id:?} has no pivot in the puppet's manifest to turn about"));
+            }
+            Some((Target::Pose(i, part), Box::new(move |n| pose_deg(n, &parts[part]).map(|d| vec![d]))))
+        }
+    }
+}
+
+/// Each piece is preceded by its length, so that no two different inputs run together to the same bytes.
+fn hash(canonical: &str, files: BTreeMap<String, Rc<[u8]>>) -> String {
+    let mut sha = Sha256::new();
+    let mut piece = |bytes: &[u8]| {
+        sha.update((bytes.len() as u64).to_le_bytes());
+        sha.update(bytes);
+    };
+    piece(b"kelir scene 1");
+    piece(canonical.as_bytes());
+    for (path, bytes) in &files {
+        piece(path.as_bytes());
+        piece(bytes);
+    }
+    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

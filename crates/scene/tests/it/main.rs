@@ -1,0 +1,6 @@
+//! The scene crate from outside: files in, theatres out.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+mod good;
+mod refused;
+mod support;
