@@ -7,6 +7,7 @@
 //! | [`descriptive`] | mean, variance, autocorrelation, one-way analysis of variance |
 //! | [`inference`] | tests, intervals, effect sizes, equivalence, Bayes factor, corrections, power |
 //! | [`clustered`] | choices of participants × pairs: intraclass correlation, bootstrap, robust and mixed logit |
+//! | [`pairwise`] | Bradley–Terry and Thurstone scaling in JOD, circular triads, odd observers |
 //! | [`random`] | the seeded generator behind every resampling |
 //!
 //! Invalid input is an `Err` ([`StatsError`]) that names the field, the value and the rule. NaN is always invalid
@@ -22,6 +23,7 @@ pub mod inference;
 mod linalg;
 mod normal;
 mod optimise;
+pub mod pairwise;
 pub mod random;
 
 pub use error::{Result, StatsError};

@@ -48,6 +48,11 @@ pub(crate) fn inverse(l: &[f64], p: usize) -> Vec<f64> {
     out
 }
 
+/// ln det of L Lᵀ.
+pub(crate) fn log_det(l: &[f64], p: usize) -> f64 {
+    (0..p).map(|i| 2.0 * l[i * p + i].ln()).sum()
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -64,6 +69,7 @@ mod tests {
                 assert!((product - f64::from(u8::from(i == j))).abs() < 1e-14);
             }
         }
+        assert!((log_det(&l, 3) - 67f64.ln()).abs() < 1e-14);
         assert!(cholesky(&[1.0, 1.0, 1.0, 1.0], 2).is_none());
         assert!(cholesky(&[f64::NAN], 1).is_none());
     }

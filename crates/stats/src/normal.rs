@@ -4,7 +4,7 @@ use crate::distributions::normal;
 use crate::distributions::student_t::StudentT;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-pub(crate) use normal::{inverse as quantile, lower as cdf};
+pub(crate) use normal::{inverse as quantile, ln_lower as ln_cdf, lower as cdf};
 
 /// P(χ² > x) with `df` > 0 degrees of freedom; 1 for df = 0.
 pub(crate) fn chi_squared_sf(x: f64, df: f64) -> f64 {

@@ -13,8 +13,10 @@ mod mixed;
 mod tests;
 
 pub use bootstrap::{Bootstrap, BootstrapMethod, MIN_REPLICATES, bootstrap};
+pub(crate) use bootstrap::{check_replicates, quantile, standard_deviation};
 pub use intraclass::{IccEstimator, IndependenceWarning, Intraclass, independence_warning, intraclass};
 pub use logit::{Coefficient, Correction, RobustLogit, Row, robust_logit};
+pub(crate) use logit::{logistic, softplus};
 pub use mixed::{MixedLogit, mixed_logit};
 
 use crate::{Result, StatsError};
