@@ -1,1 +1,15 @@
-//! kelir-study
+//! People asked: what a study is, who sees what in which order, and what their answers add up to.
+//!
+//! Pure: no IO but the text a caller hands in, no clock, no randomness but from stated seeds.
+
+mod definition;
+mod fields;
+mod parse;
+mod problems;
+
+pub mod analysis;
+pub mod plan;
+
+pub use definition::{Block, Completion, Condition, Kind, Pair, Screening, StudyDefinition, Texts};
+pub use plan::{Trial, TrialPlan};
+pub use problems::{Problem, StudyErrors};

@@ -1,0 +1,168 @@
+//! What the answers of a study add up to: the paper's test, block by block.
+
+use crate::definition::{Kind, StudyDefinition};
+use serde::Serialize;
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// One stored answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer<'a> {
+    /// Whose answer; any string that tells participants apart.
+    pub session_id: &'a str,
+    /// Block's id.
+    pub block_id: &'a str,
+    /// Pair's id.
+    pub pair_id: &'a str,
+    /// The condition that was chosen.
+    pub chosen_condition: &'a str,
+}
+
+/// A block's choices of the target per participant, and the paper's two-tailed one-sample t-test of them.
+///
+/// Who counts: participants who answered *all* of the block's pairs, whether or not they went on to finish the study.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BlockSummary {
+    /// Block's id.
+    pub id: String,
+    /// Block's title.
+    pub title: String,
+    /// Stills or animations.
+    pub kind: Kind,
+    /// The two conditions.
+    pub conditions: [String; 2],
+    /// The condition whose choices are counted.
+    pub target: String,
+    /// Number of pairs.
+    pub pairs: usize,
+    /// Participants who answered all pairs.
+    pub n: u64,
+    /// Participants who answered some but not all, left out.
+    pub incomplete: u64,
+    /// Number of target choices → number of participants, from 0 to `pairs`.
+    pub counts: BTreeMap<u32, u64>,
+    /// Mean number of target choices; null when n = 0.
+    pub mean: Option<f64>,
+    /// Sample standard deviation (n − 1); null when n < 2.
+    pub sd: Option<f64>,
+    /// Expected number of someone who cannot tell: half the pairs.
+    pub mu: f64,
+    /// (mean − mu) / (sd / √n); null when n < 2 or sd = 0.
+    pub t: Option<f64>,
+    /// Degrees of freedom n − 1; null when n < 2.
+    pub df: Option<f64>,
+    /// Two-sided p; null where t is.
+    pub p: Option<f64>,
+    /// Why a number is null.
+    pub note: Option<String>,
+}
+
+/// Summaries of every block in study order. Answers to blocks, pairs or conditions that the study does not have are left
+/// out; of several answers of one participant to one pair the first counts.
+pub fn summarise<'a>(
+    study: &StudyDefinition,
+    answers: impl IntoIterator<Item = Answer<'a>>,
+) -> Vec<BlockSummary> {
+    let blocks: HashMap<&str, (usize, HashSet<&str>)> = study
+        .blocks
+        .iter()
+        .enumerate()
+        .map(|(i, b)| (b.id.as_str(), (i, b.pairs.iter().map(|p| p.id.as_str()).collect())))
+        .collect();
+    let mut seen: Vec<HashMap<&str, HashMap<&str, bool>>> = vec![HashMap::new(); study.blocks.len()];
+    for answer in answers {
+        let Some((i, pairs)) = blocks.get(answer.block_id) else { continue };
+        let block = &study.blocks[*i];
+        if pairs.contains(answer.pair_id) && block.conditions.iter().any(|c| c == answer.chosen_condition) {
+            let chose_target = answer.chosen_condition == block.target;
+            seen[*i].entry(answer.session_id).or_default().entry(answer.pair_id).or_insert(chose_target);
+        }
+    }
+    study
+        .blocks
+        .iter()
+        .zip(&seen)
+        .map(|(block, participants)| {
+            let pairs = block.pairs.len();
+            let mut counts: BTreeMap<u32, u64> = (0..=pairs as u32).map(|k| (k, 0)).collect();
+            let mut incomplete = 0;
+            for answers in participants.values() {
+                if answers.len() == pairs {
+                    let chosen = answers.values().filter(|target| **target).count();
+                    *counts.entry(chosen as u32).or_default() += 1;
+                } else {
+                    incomplete += 1;
+                }
+            }
+            let test = TTest::of_counts(&counts, block.mu());
+            BlockSummary {
+                id: block.id.clone(),
+                title: block.title.clone(),
+                kind: block.kind,
+                conditions: block.conditions.clone(),
+                target: block.target.clone(),
+                pairs,
+                n: test.n,
+                incomplete,
+                counts,
+                mean: test.mean,
+                sd: test.sd,
+                mu: block.mu(),
+                t: test.t,
+                df: test.df,
+                p: test.p,
+                note: test.note,
+            }
+        })
+        .collect()
+}
+
+/// A two-tailed one-sample t-test of a table of counts; a number that is not defined is `None` and the note says why.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TTest {
+    /// Observations.
+    pub n: u64,
+    /// Their mean.
+    pub mean: Option<f64>,
+    /// Sample standard deviation (n − 1).
+    pub sd: Option<f64>,
+    /// (mean − mu) / (sd / √n).
+    pub t: Option<f64>,
+    /// n − 1.
+    pub df: Option<f64>,
+    /// Two-sided p.
+    pub p: Option<f64>,
+    /// Why a number is missing.
+    pub note: Option<String>,
+}
+
+impl TTest {
+    /// The test of `value → how many observations have it` against `mu`; the sums are exact in integers.
+    pub fn of_counts(counts: &BTreeMap<u32, u64>, mu: f64) -> TTest {
+        let n: u64 = counts.values().sum();
+        let sum: u128 = counts.iter().map(|(x, k)| u128::from(*x) * u128::from(*k)).sum();
+        let squares: u128 = counts.iter().map(|(x, k)| u128::from(*x).pow(2) * u128::from(*k)).sum();
+        if n == 0 {
+            return TTest {
+                note: Some("no participant has answered all pairs yet".to_owned()),
+                ..TTest::default()
+            };
+        }
+        let mean = sum as f64 / n as f64;
+        if n == 1 {
+            let note = Some("one participant alone has no standard deviation".to_owned());
+            return TTest { n, mean: Some(mean), note, ..TTest::default() };
+        }
+        let df = (n - 1) as f64;
+        let scaled_variance = u128::from(n) * squares - sum * sum;
+        let sd = (scaled_variance as f64 / (n as f64 * df)).sqrt();
+        if scaled_variance == 0 {
+            let note = Some("all participants chose the same number: t is not defined".to_owned());
+            return TTest { n, mean: Some(mean), sd: Some(0.0), df: Some(df), note, ..TTest::default() };
+        }
+        let t = (mean - mu) / (sd / (n as f64).sqrt());
+        TTest { n, mean: Some(mean), sd: Some(sd), t: Some(t), df: Some(df), p: None, note: None }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,196 @@
+//! What a study is, once its file has been read and found right.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+
+/// A study as its file defines it; every value has been checked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StudyDefinition {
+    /// The file's name without `.toml`; stands in addresses and data.
+    pub id: String,
+    /// Title for participants and researchers.
+    pub title: String,
+    /// The question over every pair.
+    pub question: String,
+    /// Seed of every participant's trial plan, 0..=2^53.
+    pub seed: u64,
+    /// Stimulus size [width, height] in pixels.
+    pub size: [u32; 2],
+    /// Linear luminance of the grey around the stimuli, 0..=1.
+    pub surround: f64,
+    /// How long taking part is said to take, in minutes.
+    pub estimated_minutes: u32,
+    /// A session without a sign of life for this long gives its slot to someone else, in minutes.
+    pub idle_minutes: u32,
+    /// The code at the end and where it leads.
+    pub completion: Completion,
+    /// What participants read.
+    pub texts: Texts,
+    /// How stimuli come to be, by condition name.
+    pub conditions: BTreeMap<String, Condition>,
+    /// Blocks in the order they are shown.
+    pub blocks: Vec<Block>,
+    /// Rules of exclusion, stated before there are results.
+    #[serde(default)]
+    pub screening: Screening,
+}
+
+/// The code at the end and where it leads.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Completion {
+    /// One code for all (recruiting panels ask for it); absent: each session gets its own.
+    pub code: Option<String>,
+    /// Address to go on to; `[CODE]` and `[NAME]` of an address parameter are filled in.
+    pub redirect: Option<String>,
+}
+
+/// What participants read; each text is a list of plain paragraphs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Texts {
+    /// First page.
+    pub welcome: Vec<String>,
+    /// What taking part means.
+    pub consent: Vec<String>,
+    /// What to do, with the keys.
+    pub instructions: Vec<String>,
+    /// What was shown and measured, told afterwards.
+    pub debriefing: Vec<String>,
+    /// Last words, beside the completion code.
+    pub thanks: Vec<String>,
+}
+
+/// Where the pictures of a condition come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "source", rename_all = "lowercase")]
+pub enum Condition {
+    /// Drawn from each pair's scene.
+    Rendered {
+        /// Technique name, such as `pa` or `mc`.
+        technique: String,
+        /// The technique's own settings, handed to the renderer as they are.
+        knobs: BTreeMap<String, Value>,
+        /// Settings of a simulated camera that photographs the drawn image.
+        camera: Option<BTreeMap<String, Value>>,
+    },
+    /// Picture files, such as real photographs.
+    Files {
+        /// Pair id → path relative to the study file.
+        files: BTreeMap<String, String>,
+    },
+}
+
+/// Pairs of the same two conditions, shown together and analysed together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Block {
+    /// Identifier, unique in the study.
+    pub id: String,
+    /// Title for researchers.
+    pub title: String,
+    /// Stills or animations.
+    pub kind: Kind,
+    /// The two conditions compared.
+    pub conditions: [String; 2],
+    /// The condition whose choices are counted, one of `conditions`.
+    pub target: String,
+    /// The pairs, in file order.
+    pub pairs: Vec<Pair>,
+}
+
+/// What is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// One image.
+    Still,
+    /// A loop of images.
+    Animation,
+}
+
+/// One scene shown under both conditions of its block.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pair {
+    /// Identifier, unique in the study.
+    pub id: String,
+    /// Scene file relative to the study file; absent only where both conditions are picture files.
+    pub scene: Option<String>,
+}
+
+/// Whose answers are set aside, decided before there are any.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Screening {
+    /// A trial answered faster than this counts as too fast, in ms; absent: none does.
+    pub min_rt_ms: Option<f64>,
+    /// More too-fast trials than this exclude the participant.
+    pub max_fast_trials: u32,
+    /// Choosing the same side in every trial excludes the participant.
+    pub straight_lining: bool,
+}
+
+impl StudyDefinition {
+    /// SHA-256 (hex) over the definition's canonical JSON: comments and layout of the file do not count, every value does.
+    pub fn config_hash(&self) -> String {
+        hex(&Sha256::digest(self.canonical_json()))
+    }
+
+    /// The definition as JSON text with fixed key order; [`StudyDefinition`] reads it back.
+    pub fn canonical_json(&self) -> String {
+        serde_json::to_string(self).expect("a definition holds only finite numbers and string keys")
+    }
+
+    /// Number of trials a participant sees.
+    pub fn trial_count(&self) -> usize {
+        self.blocks.iter().map(|block| block.pairs.len()).sum()
+    }
+
+    /// The block with this id.
+    pub fn block(&self, id: &str) -> Option<&Block> {
+        self.blocks.iter().find(|block| block.id == id)
+    }
+}
+
+impl Block {
+    /// Expected number of target choices of someone who cannot tell: half the pairs.
+    pub fn mu(&self) -> f64 {
+        self.pairs.len() as f64 / 2.0
+    }
+
+    /// The condition that is not the target.
+    pub fn other(&self) -> &str {
+        let [a, b] = &self.conditions;
+        if *a == self.target { b } else { a }
+    }
+}
+
+impl Completion {
+    /// The address to go on to, with `[CODE]` and each `[NAME]` of `params` filled in, percent-encoded; a name that is not
+    /// among them becomes empty.
+    pub fn redirect_to(&self, code: &str, params: &BTreeMap<String, String>) -> Option<String> {
+        let mut rest = self.redirect.as_deref()?;
+        let mut address = String::with_capacity(rest.len());
+        while let Some((before, after)) = rest.split_once('[') {
+            let Some((name, tail)) = after.split_once(']') else { break };
+            address.push_str(before);
+            let value = if name == "CODE" { Some(code) } else { params.get(name).map(String::as_str) };
+            percent_encode(value.unwrap_or_default(), &mut address);
+            rest = tail;
+        }
+        address.push_str(rest);
+        Some(address)
+    }
+}
+
+fn percent_encode(value: &str, out: &mut String) {
+    for byte in value.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-._~".contains(&byte) {
+            out.push(byte as char);
+        } else {
+            out.push_str(&format!("%{byte:02X}"));
+        }
+    }
+}
+
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}

@@ -1,0 +1,162 @@
+//! Reading a TOML table field by field, so that one pass finds every problem and every unknown key.
+
+use crate::problems::Problem;
+use std::cell::RefCell;
+use toml::{Table, Value};
+
+/// Where problems are gathered while one file is read.
+pub(crate) struct Gatherer<'a> {
+    file: &'a str,
+    problems: RefCell<Vec<Problem>>,
+}
+
+impl<'a> Gatherer<'a> {
+    pub(crate) fn new(file: &'a str) -> Self {
+        Gatherer { file, problems: RefCell::default() }
+    }
+
+    pub(crate) fn report(&self, field: &str, value: Option<&Value>, rule: impl Into<String>) {
+        self.problems.borrow_mut().push(Problem {
+            file: self.file.to_owned(),
+            field: field.to_owned(),
+            value: value.map(shorten),
+            rule: rule.into(),
+        });
+    }
+
+    pub(crate) fn into_problems(self) -> Vec<Problem> {
+        self.problems.into_inner()
+    }
+}
+
+/// A message stays one line, however long the value is.
+fn shorten(value: &Value) -> String {
+    let text = value.to_string().replace('\n', "\\n");
+    if text.chars().count() <= 80 { text } else { text.chars().take(77).chain("...".chars()).collect() }
+}
+
+/// One table of the file; its `finish` reports the keys that nobody asked for.
+pub(crate) struct Fields<'a> {
+    gatherer: &'a Gatherer<'a>,
+    table: &'a Table,
+    path: String,
+    asked: Vec<&'static str>,
+}
+
+impl<'a> Fields<'a> {
+    pub(crate) fn new(gatherer: &'a Gatherer<'a>, path: impl Into<String>, table: &'a Table) -> Self {
+        Fields { gatherer, table, path: path.into(), asked: Vec::new() }
+    }
+
+    /// The table under `value`, or a problem.
+    pub(crate) fn of(gatherer: &'a Gatherer<'a>, path: String, value: &'a Value) -> Option<Self> {
+        match value.as_table() {
+            Some(table) => Some(Fields::new(gatherer, path, table)),
+            None => {
+                gatherer.report(&path, Some(value), "must be a table");
+                None
+            }
+        }
+    }
+
+    pub(crate) fn path_of(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    pub(crate) fn raw(&mut self, key: &'static str) -> Option<&'a Value> {
+        self.asked.push(key);
+        self.table.get(key)
+    }
+
+    /// An optional field: `None` when absent, a problem when `read` refuses it.
+    pub(crate) fn get<T>(
+        &mut self,
+        key: &'static str,
+        rule: &str,
+        read: impl FnOnce(&'a Value) -> Option<T>,
+    ) -> Option<T> {
+        let value = self.raw(key)?;
+        let read = read(value);
+        if read.is_none() {
+            self.gatherer.report(&self.path_of(key), Some(value), format!("must be {rule}"));
+        }
+        read
+    }
+
+    /// A required field: a problem when absent or refused.
+    pub(crate) fn need<T>(
+        &mut self,
+        key: &'static str,
+        rule: &str,
+        read: impl FnOnce(&'a Value) -> Option<T>,
+    ) -> Option<T> {
+        if !self.table.contains_key(key) {
+            self.asked.push(key);
+            self.gatherer.report(&self.path_of(key), None, format!("missing; must be {rule}"));
+            return None;
+        }
+        self.get(key, rule, read)
+    }
+
+    /// The entries of an array of tables with their paths; a problem where it is something else or absent.
+    pub(crate) fn tables(&mut self, key: &'static str) -> Vec<Fields<'a>> {
+        let items = self.need(key, "an array of tables with at least one", |v| {
+            v.as_array().filter(|items| !items.is_empty())
+        });
+        let path = self.path_of(key);
+        items
+            .into_iter()
+            .flatten()
+            .enumerate()
+            .filter_map(|(i, item)| Fields::of(self.gatherer, format!("{path}[{i}]"), item))
+            .collect()
+    }
+
+    pub(crate) fn report(&self, key: &str, value: Option<&Value>, rule: impl Into<String>) {
+        self.gatherer.report(&self.path_of(key), value, rule);
+    }
+
+    /// Reports every key that was not asked for.
+    pub(crate) fn finish(self) {
+        for (key, value) in self.table {
+            if !self.asked.contains(&key.as_str()) {
+                let known = self.asked.join(", ");
+                self.gatherer.report(
+                    &self.path_of(key),
+                    Some(value),
+                    format!("unknown key; known here are {known}"),
+                );
+            }
+        }
+    }
+}
+
+/// A finite number within `[low, high]`, integers included.
+pub(crate) fn number(value: &Value, low: f64, high: f64) -> Option<f64> {
+    let x = match value {
+        Value::Float(x) => *x,
+        Value::Integer(i) => *i as f64,
+        _ => return None,
+    };
+    (x >= low && x <= high).then_some(x)
+}
+
+/// An integer within `[low, high]`.
+pub(crate) fn integer(value: &Value, low: i64, high: i64) -> Option<u64> {
+    value.as_integer().filter(|i| (low..=high).contains(i)).and_then(|i| u64::try_from(i).ok())
+}
+
+/// A string that is not blank and has at most `most` characters.
+pub(crate) fn text(value: &Value, most: usize) -> Option<String> {
+    value.as_str().map(str::trim).filter(|s| !s.is_empty() && s.chars().count() <= most).map(str::to_owned)
+}
+
+/// The rule of [`identifier`] in words.
+pub(crate) const IDENTIFIER: &str = "a name of 1 to 64 of a-z, 0-9 and -, starting with a letter or digit";
+
+/// An identifier as it may stand in an address, a file name and a CSV column.
+pub(crate) fn identifier(s: &str) -> bool {
+    (1..=64).contains(&s.len())
+        && !s.starts_with('-')
+        && s.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-')
+}

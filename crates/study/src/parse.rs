@@ -1,0 +1,380 @@
+//! From a study file's text to a [`StudyDefinition`], or to every problem it has.
+
+use crate::definition::{Block, Completion, Condition, Kind, Pair, Screening, StudyDefinition, Texts};
+use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
+use crate::problems::{Problem, StudyErrors};
+use serde_json::Value as Json;
+use std::collections::{BTreeMap, BTreeSet};
+use toml::{Table, Value};
+
+/// Two stimuli of width w and a gap of w/20 fit a 1280-pixel window with 16 pixels of margin on either side.
+const MAX_WIDTH: i64 = 608;
+
+impl StudyDefinition {
+    /// Reads a study file. `file` names it in messages; its stem is the study's id.
+    ///
+    /// # Errors
+    /// Every problem of the file, in one list.
+    pub fn parse(file: &str, source: &str) -> Result<StudyDefinition, StudyErrors> {
+        let table = source.parse::<Table>().map_err(|error| {
+            let field = match error.span() {
+                Some(span) => position(source, span.start),
+                None => "text".to_owned(),
+            };
+            let rule = format!("is no TOML: {}", error.message());
+            StudyErrors(vec![Problem { file: file.to_owned(), field, value: None, rule }])
+        })?;
+        let gatherer = Gatherer::new(file);
+        let study = read_study(&gatherer, file, &table);
+        match (study, gatherer.into_problems()) {
+            (Some(study), problems) if problems.is_empty() => Ok(study),
+            (_, problems) => Err(StudyErrors(problems)),
+        }
+    }
+}
+
+fn position(source: &str, offset: usize) -> String {
+    let before = source.get(..offset).unwrap_or(source);
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+    format!("line {line}, column {column}")
+}
+
+fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<StudyDefinition> {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    let id = name.strip_suffix(".toml").unwrap_or(name).to_owned();
+    if !identifier(&id) {
+        gatherer.report("file name", Some(&Value::String(id.clone())), format!("must be {IDENTIFIER}"));
+    }
+    let mut fields = Fields::new(gatherer, "", table);
+    let title = fields.need("title", "a text of 1 to 200 characters", |v| text(v, 200));
+    let question = fields.need("question", "a text of 1 to 300 characters", |v| text(v, 300));
+    let seed = fields.need("seed", "an integer from 0 to 2^53", |v| integer(v, 0, 1 << 53));
+    let size = fields.need(
+        "size",
+        "[width, height] in pixels, width 16 to 608 (two fit a 1280-pixel window), height 16 to 2160",
+        |v| {
+            let [w, h] = v.as_array()?.as_slice() else { return None };
+            Some([integer(w, 16, MAX_WIDTH)? as u32, integer(h, 16, 2160)? as u32])
+        },
+    );
+    let surround = fields
+        .get("surround", "a linear luminance from 0 to 1", |v| number(v, 0.0, 1.0))
+        .or_else(|| fields_default(table, "surround", 0.2));
+    let estimated_minutes =
+        fields.need("estimated_minutes", "whole minutes from 1 to 600", |v| integer(v, 1, 600));
+    let idle_minutes = fields
+        .get("idle_minutes", "whole minutes from 1 to 100000", |v| integer(v, 1, 100_000))
+        .or_else(|| fields_default(table, "idle_minutes", 60));
+    let completion = read_completion(gatherer, &mut fields);
+    let screening = read_screening(gatherer, &mut fields);
+    let texts = read_texts(gatherer, &mut fields);
+    let blocks = read_blocks(gatherer, &mut fields);
+    let conditions = read_conditions(gatherer, &mut fields, &blocks);
+    fields.finish();
+    Some(StudyDefinition {
+        id,
+        title: title?,
+        question: question?,
+        seed: seed?,
+        size: size?,
+        surround: surround?,
+        estimated_minutes: u32::try_from(estimated_minutes?).ok()?,
+        idle_minutes: u32::try_from(idle_minutes?).ok()?,
+        completion: completion?,
+        texts: texts?,
+        conditions,
+        blocks,
+        screening: screening?,
+    })
+}
+
+/// The default of an absent key; a key that is there and wrong has been reported already.
+fn fields_default<T>(table: &Table, key: &str, default: T) -> Option<T> {
+    (!table.contains_key(key)).then_some(default)
+}
+
+fn read_completion(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Completion> {
+    let Some(value) = fields.raw("completion") else { return Some(Completion::default()) };
+    let mut fields = Fields::of(gatherer, "completion".to_owned(), value)?;
+    let code = fields.get("code", "a code of 1 to 64 letters, digits, - and _", |v| {
+        text(v, 64).filter(|s| s.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_'))
+    });
+    let redirect =
+        fields.get("redirect", "an https:// address of at most 2000 characters, without blanks", |v| {
+            text(v, 2000).filter(|s| s.starts_with("https://") && !s.contains(char::is_whitespace))
+        });
+    fields.finish();
+    Some(Completion { code, redirect })
+}
+
+fn read_screening(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Screening> {
+    let Some(value) = fields.raw("screening") else { return Some(Screening::default()) };
+    let mut fields = Fields::of(gatherer, "screening".to_owned(), value)?;
+    let min_rt_ms = fields.get("min_rt_ms", "milliseconds from 0 to 60000", |v| number(v, 0.0, 60_000.0));
+    let max_fast_trials = fields.get("max_fast_trials", "a count from 0 to 10000", |v| integer(v, 0, 10_000));
+    let straight_lining = fields.get("straight_lining", "true or false", Value::as_bool);
+    fields.finish();
+    Some(Screening {
+        min_rt_ms,
+        max_fast_trials: u32::try_from(max_fast_trials.unwrap_or(0)).ok()?,
+        straight_lining: straight_lining.unwrap_or(false),
+    })
+}
+
+fn read_texts(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Texts> {
+    let value =
+        fields.need("texts", "a table with welcome, consent, instructions, debriefing and thanks", Some)?;
+    let mut fields = Fields::of(gatherer, "texts".to_owned(), value)?;
+    let mut read = |key| {
+        fields.need(
+            key,
+            "plain text of at most 20000 characters, paragraphs apart by an empty line",
+            paragraphs,
+        )
+    };
+    let texts = (read("welcome"), read("consent"), read("instructions"), read("debriefing"), read("thanks"));
+    fields.finish();
+    let (welcome, consent, instructions, debriefing, thanks) = texts;
+    Some(Texts {
+        welcome: welcome?,
+        consent: consent?,
+        instructions: instructions?,
+        debriefing: debriefing?,
+        thanks: thanks?,
+    })
+}
+
+/// Paragraphs are apart by an empty line; a line break inside one is a blank.
+fn paragraphs(value: &Value) -> Option<Vec<String>> {
+    let text = text(value, 20_000)?;
+    let mut paragraphs = vec![String::new()];
+    for line in text.lines().map(str::trim) {
+        let last = paragraphs.last_mut()?;
+        match (line.is_empty(), last.is_empty()) {
+            (true, true) => {}
+            (true, false) => paragraphs.push(String::new()),
+            (false, true) => last.push_str(line),
+            (false, false) => {
+                last.push(' ');
+                last.push_str(line);
+            }
+        }
+    }
+    Some(paragraphs)
+}
+
+fn read_blocks(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Vec<Block> {
+    let (mut block_ids, mut pair_ids) = (BTreeSet::new(), BTreeSet::new());
+    let mut blocks = Vec::new();
+    for mut fields in fields.tables("blocks") {
+        let id = read_id(&mut fields, &mut block_ids);
+        let title = fields.need("title", "a text of 1 to 200 characters", |v| text(v, 200));
+        let kind = fields.need("kind", "\"still\" or \"animation\"", |v| match v.as_str()? {
+            "still" => Some(Kind::Still),
+            "animation" => Some(Kind::Animation),
+            _ => None,
+        });
+        let conditions = fields.need("conditions", "two different condition names", |v| {
+            let [a, b] = v.as_array()?.as_slice() else { return None };
+            let (a, b) = (a.as_str()?, b.as_str()?);
+            (identifier(a) && identifier(b) && a != b).then(|| [a.to_owned(), b.to_owned()])
+        });
+        let target = fields.need("target", "one of the block's two conditions", |v| {
+            let target = v.as_str()?;
+            conditions.as_ref().is_none_or(|c| c.iter().any(|name| name == target)).then(|| target.to_owned())
+        });
+        let mut pairs = Vec::new();
+        for mut fields in fields.tables("pairs") {
+            let id = read_id(&mut fields, &mut pair_ids);
+            let scene =
+                fields.get("scene", "a scene file relative to the study file, ending in .toml", |v| {
+                    text(v, 400).filter(|s| relative(s) && s.ends_with(".toml"))
+                });
+            fields.finish();
+            pairs.extend(id.map(|id| Pair { id, scene }));
+        }
+        fields.finish();
+        if let (Some(id), Some(title), Some(kind), Some(conditions), Some(target)) =
+            (id, title, kind, conditions, target)
+        {
+            blocks.push(Block { id, title, kind, conditions, target, pairs });
+        }
+    }
+    let trials: usize = blocks.iter().map(|b| b.pairs.len()).sum();
+    if trials > 10_000 {
+        gatherer.report("blocks", None, format!("have {trials} pairs; a study has at most 10000"));
+    }
+    blocks
+}
+
+fn read_id(fields: &mut Fields<'_>, taken: &mut BTreeSet<String>) -> Option<String> {
+    let id = fields.need("id", IDENTIFIER, |v| v.as_str().filter(|s| identifier(s)).map(str::to_owned))?;
+    if !taken.insert(id.clone()) {
+        fields.report("id", Some(&Value::String(id.clone())), "must be unique in the study");
+    }
+    Some(id)
+}
+
+fn relative(path: &str) -> bool {
+    !path.starts_with('/') && !path.contains(['\\', ':', '\0'])
+}
+
+fn read_conditions(
+    gatherer: &Gatherer<'_>,
+    fields: &mut Fields<'_>,
+    blocks: &[Block],
+) -> BTreeMap<String, Condition> {
+    let mut conditions = BTreeMap::new();
+    let value = fields.need("conditions", "a table of conditions", Some);
+    let Some(table) = value
+        .and_then(|v| Fields::of(gatherer, "conditions".to_owned(), v).map(|_| v))
+        .and_then(Value::as_table)
+    else {
+        return conditions;
+    };
+    for (name, value) in table {
+        let path = format!("conditions.{name}");
+        if !identifier(name) {
+            gatherer.report(&path, None, format!("a condition's name must be {IDENTIFIER}"));
+        }
+        if !blocks.iter().any(|b| b.conditions.contains(name)) {
+            gatherer.report(&path, None, "no block uses this condition");
+        }
+        if let Some(condition) = read_condition(gatherer, &path, value, name, blocks) {
+            conditions.insert(name.clone(), condition);
+        }
+    }
+    for (i, block) in blocks.iter().enumerate() {
+        for (j, name) in block.conditions.iter().enumerate() {
+            if !table.contains_key(name) {
+                let field = format!("blocks[{i}].conditions[{j}]");
+                gatherer.report(
+                    &field,
+                    Some(&Value::String(name.clone())),
+                    "must be defined under [conditions]",
+                );
+            }
+            if let Some(Condition::Rendered { .. }) = conditions.get(name) {
+                for (k, _) in block.pairs.iter().enumerate().filter(|(_, pair)| pair.scene.is_none()) {
+                    let rule = format!("missing; condition {name} is drawn from it");
+                    gatherer.report(&format!("blocks[{i}].pairs[{k}].scene"), None, rule);
+                }
+            }
+        }
+    }
+    conditions
+}
+
+fn read_condition(
+    gatherer: &Gatherer<'_>,
+    path: &str,
+    value: &Value,
+    name: &str,
+    blocks: &[Block],
+) -> Option<Condition> {
+    let mut fields = Fields::of(gatherer, path.to_owned(), value)?;
+    let mut users = blocks.iter().filter(|b| b.conditions.iter().any(|c| c == name));
+    if let Some(files) = fields.raw("files") {
+        if users.any(|b| b.kind == Kind::Animation) {
+            fields.report("files", None, "a picture file cannot be an animation; use a technique");
+        }
+        let files = read_files(gatherer, &fields.path_of("files"), files, name, blocks);
+        fields.finish();
+        return Some(Condition::Files { files: files? });
+    }
+    let technique =
+        fields.need("technique", "a technique's name (or give files = { pair = \"picture\" })", |v| {
+            v.as_str().filter(|s| identifier(s)).map(str::to_owned)
+        });
+    let camera = match fields.raw("camera") {
+        None => Some(None),
+        Some(value) => {
+            if users.any(|b| b.kind == Kind::Animation) {
+                fields.report(
+                    "camera",
+                    None,
+                    "a simulated photograph is a still; this block shows animations",
+                );
+            }
+            value
+                .as_table()
+                .map(|t| read_knobs(gatherer, &fields.path_of("camera"), t, &[]))
+                .map(Some)
+                .or_else(|| {
+                    fields.report("camera", Some(value), "must be a table of camera settings");
+                    None
+                })
+        }
+    };
+    let knobs = value.as_table().map(|t| read_knobs(gatherer, path, t, &["technique", "camera"]));
+    Some(Condition::Rendered { technique: technique?, knobs: knobs?, camera: camera? })
+}
+
+/// Settings that the renderer reads itself: numbers, texts, booleans and lists of them.
+fn read_knobs(gatherer: &Gatherer<'_>, path: &str, table: &Table, skip: &[&str]) -> BTreeMap<String, Json> {
+    fn scalar(value: &Value) -> Option<Json> {
+        match value {
+            Value::String(s) => Some(Json::from(s.as_str())),
+            Value::Integer(i) => Some(Json::from(*i)),
+            Value::Float(x) => serde_json::Number::from_f64(*x).map(Json::Number),
+            Value::Boolean(b) => Some(Json::from(*b)),
+            Value::Array(items) => items.iter().map(scalar).collect::<Option<Vec<_>>>().map(Json::Array),
+            _ => None,
+        }
+    }
+    let mut knobs = BTreeMap::new();
+    for (key, value) in table.iter().filter(|(key, _)| !skip.contains(&key.as_str())) {
+        match scalar(value) {
+            Some(json) => {
+                knobs.insert(key.clone(), json);
+            }
+            None => gatherer.report(
+                &format!("{path}.{key}"),
+                Some(value),
+                "must be a finite number, a text, true or false, or a list of these",
+            ),
+        }
+    }
+    knobs
+}
+
+fn read_files(
+    gatherer: &Gatherer<'_>,
+    path: &str,
+    value: &Value,
+    name: &str,
+    blocks: &[Block],
+) -> Option<BTreeMap<String, String>> {
+    let Some(table) = value.as_table() else {
+        gatherer.report(path, Some(value), "must be a table of pair id = picture file");
+        return None;
+    };
+    let users = || blocks.iter().filter(|b| b.conditions.iter().any(|c| c == name));
+    let mut files = BTreeMap::new();
+    for (pair, value) in table {
+        let field = format!("{path}.{pair}");
+        if !users().any(|b| b.pairs.iter().any(|p| p.id == *pair)) {
+            gatherer.report(&field, Some(value), "no block with this condition has a pair of this id");
+        }
+        let picture =
+            |s: &str| [".png", ".jpg", ".jpeg"].iter().any(|end| s.to_ascii_lowercase().ends_with(end));
+        match text(value, 400).filter(|s| relative(s) && picture(s)) {
+            Some(file) => {
+                files.insert(pair.clone(), file);
+            }
+            None => gatherer.report(
+                &field,
+                Some(value),
+                "must be a .png, .jpg or .jpeg file relative to the study file",
+            ),
+        }
+    }
+    for pair in users().flat_map(|b| &b.pairs).filter(|p| !table.contains_key(&p.id)) {
+        gatherer.report(&format!("{path}.{}", pair.id), None, "missing; every pair needs its picture");
+    }
+    Some(files)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,145 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+
+const GOOD: &str = r#"
+title = "Two blocks"
+question = "Which image is more likely to be real?"
+seed = 7
+size = [592, 333]
+estimated_minutes = 3
+[completion]
+redirect = "https://example.org/done?cc=[CODE]&who=[PROLIFIC_PID]"
+[texts]
+welcome = """
+One line
+of text.
+
+Second paragraph.
+"""
+consent = "c"
+instructions = "i"
+debriefing = "d"
+thanks = "t"
+[conditions.pa]
+technique = "pa"
+[conditions.mc]
+technique = "mc"
+spp = 64
+[conditions.photo]
+files = { fig = "photos/fig.png" }
+[[blocks]]
+id = "stills"
+title = "Stills"
+kind = "still"
+conditions = ["pa", "mc"]
+target = "pa"
+pairs = [{ id = "a", scene = "../scenes/a.toml" }, { id = "b", scene = "../scenes/b.toml" }]
+[[blocks]]
+id = "photos"
+title = "Photographs"
+kind = "still"
+conditions = ["photo", "pa"]
+target = "pa"
+pairs = [{ id = "fig", scene = "../scenes/a.toml" }]
+"#;
+
+fn problems(source: &str) -> Vec<String> {
+    match StudyDefinition::parse("studies/two.toml", source) {
+        Ok(_) => Vec::new(),
+        Err(errors) => errors.0.iter().map(Problem::to_string).collect(),
+    }
+}
+
+#[test]
+fn a_good_file_is_read() {
+    let study = StudyDefinition::parse("studies/two.toml", GOOD).unwrap();
+    assert_eq!(study.id, "two");
+    assert_eq!(study.texts.welcome, ["One line of text.", "Second paragraph."]);
+    assert_eq!(study.surround, 0.2);
+    assert_eq!(study.trial_count(), 3);
+    assert_eq!(study.block("photos").unwrap().other(), "photo");
+    let params = [("PROLIFIC_PID".to_owned(), "a&b".to_owned())].into();
+    let address = study.completion.redirect_to("X Y", &params).unwrap();
+    assert_eq!(address, "https://example.org/done?cc=X%20Y&who=a%26b");
+}
+
+#[test]
+fn the_hash_follows_values_and_not_layout_and_the_definition_survives_its_json() {
+    let study = StudyDefinition::parse("two.toml", GOOD).unwrap();
+    let commented = StudyDefinition::parse("two.toml", &format!("# a comment\n{GOOD}\n")).unwrap();
+    assert_eq!(study.config_hash(), commented.config_hash());
+    let changed = StudyDefinition::parse("two.toml", &GOOD.replace("spp = 64", "spp = 65")).unwrap();
+    assert_ne!(study.config_hash(), changed.config_hash());
+    let back: StudyDefinition = serde_json::from_str(&study.canonical_json()).unwrap();
+    assert_eq!(back, study);
+    assert_eq!(back.config_hash(), study.config_hash());
+}
+
+#[test]
+fn every_problem_is_reported_with_field_value_and_rule() {
+    let bad = GOOD
+        .replace("seed = 7", "seed = -7\nsurrond = 0.2")
+        .replace("size = [592, 333]", "size = [900, 333]")
+        .replace("spp = 64", "spp = nan")
+        .replace("id = \"b\"", "id = \"a\"")
+        .replace("target = \"pa\"\npairs = [{ id = \"a\"", "target = \"photo\"\npairs = [{ id = \"a\"");
+    let found = problems(&bad);
+    for expected in [
+        "studies/two.toml: seed = -7: must be an integer from 0 to 2^53",
+        "studies/two.toml: size = [900, 333]: must be [width, height] in pixels",
+        "studies/two.toml: surrond = 0.2: unknown key",
+        "studies/two.toml: conditions.mc.spp = nan: must be a finite number",
+        "studies/two.toml: blocks[0].pairs[1].id = \"a\": must be unique",
+        "studies/two.toml: blocks[0].target = \"photo\": must be one of",
+    ] {
+        assert!(found.iter().any(|p| p.starts_with(expected)), "no {expected:?} in {found:#?}");
+    }
+}
+
+#[test]
+fn each_rule_refuses_its_breach() {
+    // (what is replaced, by what, the field named)
+    let cases = [
+        ("title = \"Two blocks\"", "", "title"),
+        ("title = \"Two blocks\"", "title = \"  \"", "title"),
+        ("seed = 7", "seed = 1.5", "seed"),
+        ("seed = 7", "seed = 7\nsurround = nan", "surround"),
+        ("seed = 7", "seed = 7\nsurround = inf", "surround"),
+        ("seed = 7", "seed = 7\nidle_minutes = 0", "idle_minutes"),
+        ("seed = 7", "seed = 7\nscreening = 3", "screening"),
+        ("size = [592, 333]", "size = [592]", "size"),
+        ("https://example.org", "javascript:alert(1)//", "completion.redirect"),
+        ("consent = \"c\"", "", "texts.consent"),
+        ("technique = \"mc\"", "", "conditions.mc.technique"),
+        ("technique = \"mc\"", "technique = \"mc\"\ncamera = 1", "conditions.mc.camera"),
+        ("fig = \"photos/fig.png\"", "", "conditions.photo.files.fig"),
+        ("photos/fig.png", "/etc/passwd", "conditions.photo.files.fig"),
+        ("[conditions.mc]", "[conditions.other]\ntechnique = \"pa\"\n[conditions.mc]", "conditions.other"),
+        ("[\"pa\", \"mc\"]", "[\"pa\", \"pa\"]", "blocks[0].conditions"),
+        ("[\"pa\", \"mc\"]", "[\"pa\", \"ghost\"]", "blocks[0].conditions[1]"),
+        ("id = \"stills\"", "id = \"Stills!\"", "blocks[0].id"),
+        ("kind = \"still\"", "kind = \"film\"", "blocks[0].kind"),
+        ("../scenes/b.toml", "/scenes/b.toml", "blocks[0].pairs[1].scene"),
+        ("{ id = \"b\", scene = \"../scenes/b.toml\" }", "{ id = \"b\" }", "blocks[0].pairs[1].scene"),
+        ("{ id = \"b\", scene = \"../scenes/b.toml\" }", "7", "blocks[0].pairs[1]"),
+        ("title = \"Two blocks\"", "title = ", "line 2"),
+    ];
+    assert_eq!(problems(GOOD), Vec::<String>::new());
+    for (from, to, field) in cases {
+        assert!(GOOD.contains(from), "{from}");
+        let found = problems(&GOOD.replacen(from, to, 1));
+        let named = format!("studies/two.toml: {field}");
+        assert!(found.iter().any(|p| p.starts_with(&named)), "{from} → {to}: no {field} in {found:#?}");
+    }
+}
+
+#[test]
+fn hostile_text_is_refused_without_a_panic() {
+    for source in
+        ["", "\0", "a = [[[[[[", "blocks = 1", "texts = []", "conditions = []", "[[blocks]]", "size = {}"]
+    {
+        assert!(!problems(source).is_empty(), "{source:?}");
+    }
+    assert!(StudyDefinition::parse("Bad Name.toml", GOOD).is_err());
+}
