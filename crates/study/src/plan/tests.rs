@@ -92,8 +92,8 @@ proptest! {
             of.map(|t| if t.target_left { 1i64 } else { -1 }).sum::<i64>().abs()
         };
         prop_assert!(uneven(None) <= 1);
-        for block in 0..pairs.len() {
-            prop_assert!(uneven(Some(block as u32)) <= (pairs[block] % 2) as i64);
+        for (block, n) in pairs.iter().enumerate() {
+            prop_assert!(uneven(Some(block as u32)) <= (n % 2) as i64);
         }
     }
 

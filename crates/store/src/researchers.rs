@@ -1,0 +1,71 @@
+//! Who may read results: password hashes and signed-in browsers.
+
+use crate::clock;
+use crate::error::StoreError;
+use crate::sqlite::Store;
+use std::time::Duration;
+
+impl Store {
+    /// The researcher's password hash (PHC text).
+    pub async fn password_hash(&self, name: &str) -> Result<Option<String>, StoreError> {
+        Ok(sqlx::query_scalar("SELECT password_hash FROM researchers WHERE name = $1")
+            .bind(name)
+            .fetch_optional(&self.reader)
+            .await?)
+    }
+
+    /// Sets a researcher's password hash and signs every browser of theirs out.
+    pub async fn set_password_hash(&self, name: &str, hash: &str) -> Result<(), StoreError> {
+        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        sqlx::query(
+            "INSERT INTO researchers (name, password_hash, changed_at) VALUES ($1, $2, $3)
+             ON CONFLICT (name) DO UPDATE SET password_hash = excluded.password_hash, changed_at = excluded.changed_at",
+        )
+        .bind(name)
+        .bind(hash)
+        .bind(clock::now())
+        .execute(&mut *tx)
+        .await?;
+        sqlx::query("DELETE FROM researcher_sessions WHERE name = $1").bind(name).execute(&mut *tx).await?;
+        tx.commit().await?;
+        Ok(())
+    }
+
+    /// Signs a browser in for `lasting`; only the token's hash is kept.
+    pub async fn sign_in(&self, name: &str, token_hash: &str, lasting: Duration) -> Result<(), StoreError> {
+        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        sqlx::query("DELETE FROM researcher_sessions WHERE expires_at <= $1")
+            .bind(clock::now())
+            .execute(&mut *tx)
+            .await?;
+        sqlx::query("INSERT INTO researcher_sessions (token_hash, name, created_at, expires_at) VALUES ($1, $2, $3, $4)")
+            .bind(token_hash)
+            .bind(name)
+            .bind(clock::now())
+            .bind(clock::after_now(lasting))
+            .execute(&mut *tx)
+            .await?;
+        tx.commit().await?;
+        Ok(())
+    }
+
+    /// Who is signed in with this token, if anyone still is.
+    pub async fn signed_in(&self, token_hash: &str) -> Result<Option<String>, StoreError> {
+        Ok(sqlx::query_scalar(
+            "SELECT name FROM researcher_sessions WHERE token_hash = $1 AND expires_at > $2",
+        )
+        .bind(token_hash)
+        .bind(clock::now())
+        .fetch_optional(&self.reader)
+        .await?)
+    }
+
+    /// Signs the browser with this token out.
+    pub async fn sign_out(&self, token_hash: &str) -> Result<(), StoreError> {
+        sqlx::query("DELETE FROM researcher_sessions WHERE token_hash = $1")
+            .bind(token_hash)
+            .execute(&self.writer)
+            .await?;
+        Ok(())
+    }
+}

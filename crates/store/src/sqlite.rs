@@ -1,0 +1,70 @@
+//! Opening the database: pragmas, pools, migrations.
+
+use crate::error::StoreError;
+use crate::files::Files;
+use sqlx::SqlSafeStr;
+use sqlx::migrate::{Migration, MigrationType, Migrator};
+use sqlx::sqlite::{
+    SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
+};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Applied migrations never change; a new one is a new line.
+const MIGRATIONS: [(i64, &str, &str); 1] =
+    [(1, "first", include_str!("../../../migrations/sqlite/0001_first.sql"))];
+
+/// The database and the stimulus files of one data folder.
+#[derive(Clone, Debug)]
+pub struct Store {
+    /// One connection: writers queue here instead of failing as busy, and the chain of answers has one order.
+    pub(crate) writer: SqlitePool,
+    pub(crate) reader: SqlitePool,
+    pub(crate) files: Files,
+    pub(crate) folder: PathBuf,
+}
+
+impl Store {
+    /// Opens `folder`, which it makes if need be, with `kelir.sqlite` and `stimuli/` inside, and brings the layout up to date.
+    ///
+    /// # Errors
+    /// The folder or the database cannot be opened, or was written by a newer version.
+    pub async fn open(folder: &Path) -> Result<Store, StoreError> {
+        std::fs::create_dir_all(folder)
+            .map_err(|source| StoreError::File { path: folder.to_owned(), source })?;
+        let options = SqliteConnectOptions::new()
+            .filename(folder.join("kelir.sqlite"))
+            .create_if_missing(true)
+            .journal_mode(SqliteJournalMode::Wal)
+            .synchronous(SqliteSynchronous::Full)
+            .foreign_keys(true)
+            .pragma("recursive_triggers", "on")
+            .busy_timeout(Duration::from_secs(10));
+        let writer = SqlitePoolOptions::new().max_connections(1).connect_with(options.clone()).await?;
+        let migrations = MIGRATIONS.map(|(version, name, sql)| {
+            Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
+        });
+        Migrator::with_migrations(migrations.into()).run(&writer).await?;
+        let reader =
+            SqlitePoolOptions::new().max_connections(4).connect_with(options.read_only(true)).await?;
+        let files = Files::open(folder.join("stimuli"))?;
+        Ok(Store { writer, reader, files, folder: folder.to_owned() })
+    }
+
+    /// The data folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Whether the database answers.
+    pub async fn ping(&self) -> Result<(), StoreError> {
+        sqlx::query("SELECT 1").execute(&self.reader).await?;
+        Ok(())
+    }
+
+    /// Closes every connection, after what is under way.
+    pub async fn close(&self) {
+        self.reader.close().await;
+        self.writer.close().await;
+    }
+}
