@@ -1,1 +1,29 @@
-//! kelir-server
+//! kelir's server: participants take studies, researchers read what came of them.
+//!
+//! [`Server::open`] opens a data folder, [`Server::start`] also makes the stimuli and listens. Studies come from the
+//! folder that is built in and from `DATA/studies/`; a `DATA` laid out like `stimuli/` adds to what is built in or replaces it.
+
+mod app;
+mod error;
+mod export;
+mod extract;
+mod headers;
+mod library;
+mod limiter;
+mod making;
+mod password;
+mod picture;
+mod results;
+mod routes;
+mod server;
+mod web;
+
+pub use error::{StartError, StudyFileError};
+pub use export::{CODEBOOK, codebook_csv, responses_csv};
+pub use library::Library;
+pub use making::{Made, Maker, Making, Task};
+pub use results::{Results, results};
+pub use server::{Handle, Server, ServerConfig};
+
+/// Re-exported for callers that read a data folder without a server.
+pub use kelir_store::{Store, StoreError};

@@ -1,0 +1,228 @@
+//! Making a study's stimuli: each once, stored by what it is with where it came from.
+
+use crate::library::Library;
+use crate::picture;
+use kelir_store::{Render, Store, StoreError, sha256_hex};
+use kelir_study::{Block, Condition, Pair, StudyDefinition};
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// One stimulus to make: a pair of a study under one of its conditions.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'a> {
+    /// The study.
+    pub study: &'a StudyDefinition,
+    /// The pair's block.
+    pub block: &'a Block,
+    /// The pair.
+    pub pair: &'a Pair,
+    /// The condition's name.
+    pub name: &'a str,
+    /// The condition.
+    pub condition: &'a Condition,
+}
+
+/// A finished stimulus.
+#[derive(Clone, Debug)]
+pub struct Made {
+    /// Media type of `bytes`.
+    pub media_type: String,
+    /// What is shown, or the manifest of an animation.
+    pub bytes: Vec<u8>,
+    /// Media type and bytes of what the manifest names by hash.
+    pub attachments: Vec<(String, Vec<u8>)>,
+    /// How it was made, with its measured error.
+    pub provenance: Value,
+}
+
+/// Draws stimuli. The server's door to the renderer, so that tests can stand something else in it.
+pub trait Maker: Send + Sync + 'static {
+    /// A text that is equal for two tasks exactly when they would make the same stimulus.
+    ///
+    /// # Errors
+    /// What is wrong with the task's scene or condition.
+    fn identity(&self, task: &Task<'_>, library: &Library) -> Result<String, String>;
+
+    /// Makes the stimulus. `progress` takes the part that is done, 0..=1, and what is being done.
+    ///
+    /// # Errors
+    /// Why it cannot be made.
+    fn make(&self, task: &Task<'_>, library: &Library, progress: &mut dyn FnMut(f64, &str)) -> Result<Made, String>;
+}
+
+/// How far a study's stimuli are.
+#[derive(Clone, Debug)]
+pub struct Making {
+    /// Study's id.
+    pub study: String,
+    /// Which stimulus is being made, `pair (condition)`; empty at the end.
+    pub stimulus: String,
+    /// What is being done to it.
+    pub step: String,
+    /// Stimuli that are ready.
+    pub done: usize,
+    /// Stimuli in all.
+    pub total: usize,
+    /// Part of the present stimulus that is done, 0..=1.
+    pub fraction: f64,
+}
+
+/// Hashes of a study's stimuli by (pair id, condition).
+pub(crate) type StimulusMap = HashMap<(String, String), String>;
+
+/// Every stimulus of a study, in the order of its file.
+pub(crate) fn tasks(study: &StudyDefinition) -> Vec<Task<'_>> {
+    let mut tasks = Vec::new();
+    for block in &study.blocks {
+        for pair in &block.pairs {
+            for name in &block.conditions {
+                if let Some(condition) = study.conditions.get(name) {
+                    tasks.push(Task { study, block, pair, name, condition });
+                }
+            }
+        }
+    }
+    tasks
+}
+
+/// Why a study's stimuli could not be made.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum MakingError {
+    #[error("{stimulus}: {reason}")]
+    Stimulus { stimulus: String, reason: String },
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// Makes what is missing of a study's stimuli; what was made before, in any run, is taken as it is. Each is stored as soon as
+/// it is done, so an interrupted run goes on where it stopped.
+pub(crate) async fn make(
+    study: &Arc<StudyDefinition>,
+    store: &Store,
+    library: &Library,
+    maker: &Arc<dyn Maker>,
+    progress: &(dyn Fn(Making) + Send + Sync),
+) -> Result<StimulusMap, MakingError> {
+    let config_hash = study.config_hash();
+    let tasks = tasks(study);
+    let mut made = StimulusMap::new();
+    for (done, task) in tasks.iter().enumerate() {
+        let stimulus = format!("{} ({})", task.pair.id, task.name);
+        let event = |fraction, step: &str| Making {
+            study: study.id.clone(),
+            stimulus: stimulus.clone(),
+            step: step.to_owned(),
+            done,
+            total: tasks.len(),
+            fraction,
+        };
+        let failed = |reason: String| MakingError::Stimulus { stimulus: stimulus.clone(), reason };
+        progress(event(0.0, "looking it up"));
+        // Rendering takes long and keeps every core busy: it must not hold an async thread.
+        let identity = tokio::task::block_in_place(|| identity(task, library, maker.as_ref())).map_err(failed)?;
+        let job_key = sha256_hex(identity.as_bytes());
+        let sha256 = match intact(store, &job_key).await? {
+            Some(sha256) => sha256,
+            None => {
+                let drawn = tokio::task::block_in_place(|| {
+                    draw(task, library, maker.as_ref(), &mut |fraction, step| progress(event(fraction, step)))
+                });
+                keep(store, &job_key, drawn.map_err(failed)?).await?
+            }
+        };
+        store.put_study_stimulus(&study.id, &config_hash, &task.pair.id, task.name, &job_key).await?;
+        made.insert((task.pair.id.clone(), task.name.to_owned()), sha256);
+    }
+    let total = tasks.len();
+    progress(Making {
+        study: study.id.clone(),
+        stimulus: String::new(),
+        step: "ready".to_owned(),
+        done: total,
+        total,
+        fraction: 1.0,
+    });
+    Ok(made)
+}
+
+/// The stimulus of a finished job, if it and all it names are stored undamaged.
+async fn intact(store: &Store, job_key: &str) -> Result<Option<String>, StoreError> {
+    let Some(render) = store.render(job_key).await? else { return Ok(None) };
+    let mut wanted = vec![render.sha256.clone()];
+    while let Some(sha256) = wanted.pop() {
+        match store.stimulus(&sha256).await {
+            Ok(Some((info, bytes))) if info.media_type == ANIMATION => wanted.extend(frames(&bytes)),
+            Ok(Some(_)) => {}
+            Ok(None) | Err(StoreError::Damaged { .. }) => return Ok(None),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(Some(render.sha256))
+}
+
+/// Media type of an animation's manifest.
+pub(crate) const ANIMATION: &str = "application/vnd.kelir.animation+json";
+
+/// The frames that a manifest names, each once.
+fn frames(manifest: &[u8]) -> Vec<String> {
+    let manifest: Value = serde_json::from_slice(manifest).unwrap_or_default();
+    let mut frames: Vec<String> = manifest["frames"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|frame| frame.as_str().map(str::to_owned))
+        .collect();
+    frames.sort();
+    frames.dedup();
+    frames
+}
+
+async fn keep(store: &Store, job_key: &str, made: Made) -> Result<String, StoreError> {
+    for (media_type, bytes) in made.attachments {
+        store.put_stimulus(&media_type, bytes).await?;
+    }
+    let sha256 = store.put_stimulus(&made.media_type, made.bytes).await?;
+    let render = Render { job_key: job_key.to_owned(), sha256: sha256.clone(), provenance: made.provenance };
+    store.put_render(&render).await?;
+    Ok(sha256)
+}
+
+fn identity(task: &Task<'_>, library: &Library, maker: &dyn Maker) -> Result<String, String> {
+    match task.condition {
+        Condition::Rendered { .. } => maker.identity(task, library),
+        Condition::Files { .. } => {
+            let (path, bytes) = picture_file(task, library)?;
+            Ok(format!("file\n{path}\n{}", sha256_hex(&bytes)))
+        }
+    }
+}
+
+fn draw(
+    task: &Task<'_>,
+    library: &Library,
+    maker: &dyn Maker,
+    progress: &mut dyn FnMut(f64, &str),
+) -> Result<Made, String> {
+    match task.condition {
+        Condition::Rendered { .. } => maker.make(task, library, progress),
+        Condition::Files { .. } => {
+            let (path, bytes) = picture_file(task, library)?;
+            let (media_type, size) = picture::describe(&bytes).ok_or(format!("{path}: is neither PNG nor JPEG"))?;
+            if size != task.study.size {
+                let ([w, h], [sw, sh]) = (size, task.study.size);
+                return Err(format!("{path}: has {w} × {h} pixels; the study's size is {sw} × {sh}"));
+            }
+            let provenance = json!({ "source": "file", "file": path });
+            Ok(Made { media_type: media_type.to_owned(), bytes, attachments: Vec::new(), provenance })
+        }
+    }
+}
+
+fn picture_file(task: &Task<'_>, library: &Library) -> Result<(String, Vec<u8>), String> {
+    let Condition::Files { files } = task.condition else { return Err("is not a picture file".to_owned()) };
+    let path = files.get(&task.pair.id).ok_or("has no picture file")?;
+    let path = Library::beside_study(path);
+    let bytes = library.read(&path).map_err(|error| format!("{path}: {error}"))?;
+    Ok((path, bytes))
+}

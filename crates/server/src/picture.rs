@@ -1,0 +1,47 @@
+//! What a picture file is, read from its head: nothing is decoded.
+
+/// Media type and size [width, height] of a PNG or JPEG; `None` for anything else.
+pub(crate) fn describe(bytes: &[u8]) -> Option<(&'static str, [u32; 2])> {
+    png(bytes).map(|size| ("image/png", size)).or_else(|| jpeg(bytes).map(|size| ("image/jpeg", size)))
+}
+
+fn png(bytes: &[u8]) -> Option<[u32; 2]> {
+    let rest = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n")?;
+    let number = |at: usize| Some(u32::from_be_bytes(rest.get(at..at + 4)?.try_into().ok()?));
+    (rest.get(4..8)? == b"IHDR").then_some([number(8)?, number(12)?])
+}
+
+/// Walks the segments to the frame header (ITU T.81, B.2.2).
+fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
+    let mut at = if bytes.starts_with(&[0xff, 0xd8]) { 2 } else { return None };
+    loop {
+        let [0xff, marker, high, low] = *bytes.get(at..at + 4)? else { return None };
+        let length = usize::from(u16::from_be_bytes([high, low]));
+        let frame_header = matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc);
+        if frame_header {
+            let number = |at: usize| Some(u32::from(u16::from_be_bytes(bytes.get(at..at + 2)?.try_into().ok()?)));
+            return Some([number(at + 7)?, number(at + 5)?]);
+        }
+        at += 2 + length.max(2);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heads_are_read_and_rubbish_is_not() {
+        let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x02\x50\0\0\x01\x4d\x08\x02";
+        assert_eq!(describe(png), Some(("image/png", [592, 333])));
+        let jpeg = [0xff, 0xd8, 0xff, 0xe0, 0, 4, 1, 2, 0xff, 0xc2, 0, 11, 8, 0x01, 0x4d, 0x02, 0x50, 3];
+        assert_eq!(describe(&jpeg), Some(("image/jpeg", [592, 333])));
+        for cut in 0..png.len().min(24) {
+            assert_eq!(describe(&png[..cut]), None);
+        }
+        for cut in 0..jpeg.len() - 2 {
+            assert_eq!(describe(&jpeg[..cut]), None, "{cut}");
+        }
+        assert_eq!(describe(b"GIF89a..."), None);
+    }
+}
