@@ -68,7 +68,11 @@ impl App {
     }
 
     /// The definition that a session began with.
-    pub(crate) async fn version(&self, study_id: &str, config_hash: &str) -> Result<Arc<StudyDefinition>, ApiError> {
+    pub(crate) async fn version(
+        &self,
+        study_id: &str,
+        config_hash: &str,
+    ) -> Result<Arc<StudyDefinition>, ApiError> {
         if let Some(loaded) = self.studies.get(study_id)
             && loaded.config_hash == config_hash
         {
@@ -79,7 +83,9 @@ impl App {
         }
         let versions = self.store.study_versions(study_id).await?;
         let version = versions.into_iter().find(|v| v.config_hash == config_hash);
-        let study = Arc::new(version.ok_or_else(|| ApiError::internal("a session's study version is not stored"))?.study);
+        let study = Arc::new(
+            version.ok_or_else(|| ApiError::internal("a session's study version is not stored"))?.study,
+        );
         let mut versions = self.versions.write().unwrap_or_else(PoisonError::into_inner);
         versions.insert(config_hash.to_owned(), study.clone());
         Ok(study)
@@ -102,7 +108,9 @@ impl LoadedStudy {
             Stimuli::Ready(map) => Ok(map),
             Stimuli::Preparing(making) => {
                 let (done, total) = making.map_or((0, 0), |m| (m.done, m.total));
-                let message = format!("This study's images are still being made ({done} of {total} ready). Please come back shortly.");
+                let message = format!(
+                    "This study's images are still being made ({done} of {total} ready). Please come back shortly."
+                );
                 Err(ApiError::new(StatusCode::SERVICE_UNAVAILABLE, "not_ready", message).retry_after(5))
             }
             Stimuli::Failed(_) => {

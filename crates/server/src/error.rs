@@ -48,7 +48,10 @@ pub enum StartError {
 
 /// An answer that says what is wrong: `{"error":{"code","message","field"?}}`, and more keys where a route promises them.
 #[derive(Debug)]
-pub(crate) struct ApiError {
+pub(crate) struct ApiError(Box<Answer>);
+
+#[derive(Debug)]
+struct Answer {
     status: StatusCode,
     code: &'static str,
     message: String,
@@ -59,13 +62,16 @@ pub(crate) struct ApiError {
 
 impl ApiError {
     pub(crate) fn new(status: StatusCode, code: &'static str, message: impl Into<String>) -> Self {
-        ApiError { status, code, message: message.into(), field: None, more: None, retry_after_s: None }
+        let message = message.into();
+        ApiError(Box::new(Answer { status, code, message, field: None, more: None, retry_after_s: None }))
     }
 
     pub(crate) fn field(field: impl Into<String>, rule: impl Into<String>) -> Self {
         let (field, rule) = (field.into(), rule.into());
         let message = format!("{field} {rule}");
-        ApiError { field: Some(field), ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "invalid_field", message) }
+        let mut error = Self::new(StatusCode::UNPROCESSABLE_ENTITY, "invalid_field", message);
+        error.0.field = Some(field);
+        error
     }
 
     pub(crate) fn not_found(what: &str) -> Self {
@@ -77,23 +83,31 @@ impl ApiError {
     }
 
     pub(crate) fn unauthorized() -> Self {
-        Self::new(StatusCode::UNAUTHORIZED, "unauthorized", "This session is not known, or the token is not its own.")
+        Self::new(
+            StatusCode::UNAUTHORIZED,
+            "unauthorized",
+            "This session is not known, or the token is not its own.",
+        )
     }
 
     pub(crate) fn with(mut self, key: &'static str, value: serde_json::Value) -> Self {
-        self.more = Some((key, value));
+        self.0.more = Some((key, value));
         self
     }
 
     pub(crate) fn retry_after(mut self, seconds: u64) -> Self {
-        self.retry_after_s = Some(seconds);
+        self.0.retry_after_s = Some(seconds);
         self
     }
 
     /// Something here is broken: the log gets the reason, the browser does not.
     pub(crate) fn internal(reason: impl std::fmt::Display) -> Self {
         tracing::error!("{reason}");
-        Self::new(StatusCode::INTERNAL_SERVER_ERROR, "internal", "Something is wrong on the server; it has been noted.")
+        Self::new(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "internal",
+            "Something is wrong on the server; it has been noted.",
+        )
     }
 }
 
@@ -105,17 +119,18 @@ impl From<StoreError> for ApiError {
 
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
-        let mut error = json!({ "code": self.code, "message": self.message });
-        if let Some(field) = self.field {
+        let answer = *self.0;
+        let mut error = json!({ "code": answer.code, "message": answer.message });
+        if let Some(field) = answer.field {
             error["field"] = field.into();
         }
-        if let Some((key, value)) = self.more {
+        if let Some((key, value)) = answer.more {
             error[key] = value;
         }
-        let mut response = (self.status, Json(json!({ "error": error }))).into_response();
+        let mut response = (answer.status, Json(json!({ "error": error }))).into_response();
         let headers = response.headers_mut();
         headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
-        if let Some(seconds) = self.retry_after_s {
+        if let Some(seconds) = answer.retry_after_s {
             headers.insert(header::RETRY_AFTER, HeaderValue::from(seconds));
         }
         response

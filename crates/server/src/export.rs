@@ -67,7 +67,8 @@ pub async fn responses_csv(store: &Store, study: &StudyDefinition) -> Result<Str
     write_row(&mut out, CODEBOOK.iter().map(|column| column.0.to_owned()));
     for (row, payload) in &rows {
         let Some(session) = sessions.get(row.session_id.as_str()) else { continue };
-        let payload: Value = payload.as_deref().and_then(|p| serde_json::from_str(p).ok()).unwrap_or_default();
+        let payload: Value =
+            payload.as_deref().and_then(|p| serde_json::from_str(p).ok()).unwrap_or_default();
         let answered = answered.get(row.session_id.as_str()).copied().unwrap_or_default();
         let cells = CODEBOOK.iter().map(|column| cell(column.0, study, session, row, &payload, answered));
         write_row(&mut out, cells);
@@ -145,7 +146,9 @@ fn write_row(out: &mut String, cells: impl IntoIterator<Item = String>) {
         if i > 0 {
             out.push(',');
         }
-        if cell.starts_with(['=', '+', '@', '\t', '\r']) || (cell.starts_with('-') && cell.parse::<f64>().is_err()) {
+        if cell.starts_with(['=', '+', '@', '\t', '\r'])
+            || (cell.starts_with('-') && cell.parse::<f64>().is_err())
+        {
             cell.insert(0, '\'');
         }
         if cell.contains([',', '"', '\n', '\r']) {

@@ -18,25 +18,32 @@ impl<S: Send + Sync> FromRequest<S> for Object {
     type Rejection = ApiError;
 
     async fn from_request(request: Request, state: &S) -> Result<Self, ApiError> {
-        let media_type = request.headers().get(header::CONTENT_TYPE).and_then(|v| v.to_str().ok()).unwrap_or_default();
+        let media_type =
+            request.headers().get(header::CONTENT_TYPE).and_then(|v| v.to_str().ok()).unwrap_or_default();
         let media_type = media_type.split(';').next().unwrap_or_default().trim().to_ascii_lowercase();
         if media_type != "application/json" {
             let message = "The body must be JSON, with Content-Type: application/json.";
             return Err(ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "not_json", message));
         }
-        let bytes = Bytes::from_request(request, state).await.map_err(|rejection: BytesRejection| {
-            match rejection.status() {
-                StatusCode::PAYLOAD_TOO_LARGE => {
-                    ApiError::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "The body is larger than this address takes.")
-                }
+        let bytes =
+            Bytes::from_request(request, state).await.map_err(|rejection: BytesRejection| match rejection
+                .status()
+            {
+                StatusCode::PAYLOAD_TOO_LARGE => ApiError::new(
+                    StatusCode::PAYLOAD_TOO_LARGE,
+                    "too_large",
+                    "The body is larger than this address takes.",
+                ),
                 _ => ApiError::new(StatusCode::BAD_REQUEST, "bad_body", "The body could not be read."),
-            }
-        })?;
+            })?;
         match serde_json::from_slice(&bytes) {
             Ok(Value::Object(object)) => Ok(Object(object)),
-            Ok(_) => Err(ApiError::new(StatusCode::BAD_REQUEST, "bad_json", "The body must be a JSON object.")),
+            Ok(_) => {
+                Err(ApiError::new(StatusCode::BAD_REQUEST, "bad_json", "The body must be a JSON object."))
+            }
             Err(error) => {
-                let message = format!("The body is no JSON: line {}, column {}.", error.line(), error.column());
+                let message =
+                    format!("The body is no JSON: line {}, column {}.", error.line(), error.column());
                 Err(ApiError::new(StatusCode::BAD_REQUEST, "bad_json", message))
             }
         }
@@ -47,7 +54,10 @@ impl Object {
     /// Refuses keys other than these.
     pub(crate) fn only(&self, known: &[&str]) -> Result<(), ApiError> {
         match self.0.keys().find(|key| !known.contains(&key.as_str())) {
-            Some(key) => Err(ApiError::field(key.as_str(), format!("is not known here; known are {}", known.join(", ")))),
+            Some(key) => Err(ApiError::field(
+                key.as_str(),
+                format!("is not known here; known are {}", known.join(", ")),
+            )),
             None => Ok(()),
         }
     }

@@ -52,10 +52,14 @@ impl Library {
     pub fn study_files(&self) -> Vec<String> {
         let built_in = BuiltIn::iter().map(|path| path.into_owned());
         let own = std::fs::read_dir(self.folder.join("studies")).into_iter().flatten().flatten();
-        let own = own.filter_map(|entry| entry.file_name().into_string().ok()).map(|name| format!("studies/{name}"));
+        let own = own
+            .filter_map(|entry| entry.file_name().into_string().ok())
+            .map(|name| format!("studies/{name}"));
         let all: BTreeSet<String> = built_in.chain(own).collect();
         all.into_iter()
-            .filter(|path| path.ends_with(".toml") && path.matches('/').count() == 1 && path.starts_with("studies/"))
+            .filter(|path| {
+                path.ends_with(".toml") && path.matches('/').count() == 1 && path.starts_with("studies/")
+            })
             .collect()
     }
 
@@ -110,7 +114,15 @@ mod tests {
         std::os::unix::fs::symlink("../../secret.toml", data.join("studies/link.toml")).unwrap();
         let library = Library::new(&data);
         assert_eq!(library.read("scenes/../studies/./mine.toml").unwrap(), b"mine");
-        for path in ["../secret.toml", "studies/../../secret.toml", "/etc/passwd", "studies/link.toml", "a\\b", "", "a//b"] {
+        for path in [
+            "../secret.toml",
+            "studies/../../secret.toml",
+            "/etc/passwd",
+            "studies/link.toml",
+            "a\\b",
+            "",
+            "a//b",
+        ] {
             let error = library.read(path).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::PermissionDenied, "{path}");
         }

@@ -48,7 +48,12 @@ pub trait Maker: Send + Sync + 'static {
     ///
     /// # Errors
     /// Why it cannot be made.
-    fn make(&self, task: &Task<'_>, library: &Library, progress: &mut dyn FnMut(f64, &str)) -> Result<Made, String>;
+    fn make(
+        &self,
+        task: &Task<'_>,
+        library: &Library,
+        progress: &mut dyn FnMut(f64, &str),
+    ) -> Result<Made, String>;
 }
 
 /// How far a study's stimuli are.
@@ -120,7 +125,8 @@ pub(crate) async fn make(
         let failed = |reason: String| MakingError::Stimulus { stimulus: stimulus.clone(), reason };
         progress(event(0.0, "looking it up"));
         // Rendering takes long and keeps every core busy: it must not hold an async thread.
-        let identity = tokio::task::block_in_place(|| identity(task, library, maker.as_ref())).map_err(failed)?;
+        let identity =
+            tokio::task::block_in_place(|| identity(task, library, maker.as_ref())).map_err(failed)?;
         let job_key = sha256_hex(identity.as_bytes());
         let sha256 = match intact(store, &job_key).await? {
             Some(sha256) => sha256,
@@ -208,7 +214,8 @@ fn draw(
         Condition::Rendered { .. } => maker.make(task, library, progress),
         Condition::Files { .. } => {
             let (path, bytes) = picture_file(task, library)?;
-            let (media_type, size) = picture::describe(&bytes).ok_or(format!("{path}: is neither PNG nor JPEG"))?;
+            let (media_type, size) =
+                picture::describe(&bytes).ok_or(format!("{path}: is neither PNG nor JPEG"))?;
             if size != task.study.size {
                 let ([w, h], [sw, sh]) = (size, task.study.size);
                 return Err(format!("{path}: has {w} × {h} pixels; the study's size is {sw} × {sh}"));

@@ -67,7 +67,8 @@ fn hash(password: &str) -> Result<String, StartError> {
 
 /// Whether `password` has this hash; takes the same time for any wrong one.
 pub(crate) fn verify(password: &str, hash: &str) -> bool {
-    PasswordHash::new(hash).is_ok_and(|hash| Argon2::default().verify_password(password.as_bytes(), &hash).is_ok())
+    PasswordHash::new(hash)
+        .is_ok_and(|hash| Argon2::default().verify_password(password.as_bytes(), &hash).is_ok())
 }
 
 /// Four groups of five of Crockford's letters: 100 bits, readable aloud.

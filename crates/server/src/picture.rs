@@ -19,7 +19,8 @@ fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
         let length = usize::from(u16::from_be_bytes([high, low]));
         let frame_header = matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc);
         if frame_header {
-            let number = |at: usize| Some(u32::from(u16::from_be_bytes(bytes.get(at..at + 2)?.try_into().ok()?)));
+            let number =
+                |at: usize| Some(u32::from(u16::from_be_bytes(bytes.get(at..at + 2)?.try_into().ok()?)));
             return Some([number(at + 7)?, number(at + 5)?]);
         }
         at += 2 + length.max(2);

@@ -48,7 +48,8 @@ pub async fn results(store: &Store, study: &StudyDefinition) -> Result<Results, 
         pair_id: &row.pair_id,
         chosen_condition: &row.chosen_condition,
     });
-    let other = store.sessions_by_version(&study.id).await?.into_iter().filter(|(hash, _)| *hash != config_hash);
+    let other =
+        store.sessions_by_version(&study.id).await?.into_iter().filter(|(hash, _)| *hash != config_hash);
     Ok(Results {
         study: study.id.clone(),
         title: study.title.clone(),

@@ -1,6 +1,7 @@
 //! What the answers of a study add up to: the paper's test, block by block.
 
 use crate::definition::{Kind, StudyDefinition};
+use kelir_stats::inference::t_test_from_counts;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -136,31 +137,32 @@ pub struct TTest {
 }
 
 impl TTest {
-    /// The test of `value → how many observations have it` against `mu`; the sums are exact in integers.
+    /// The test of `value → how many observations have it` against `mu`.
     pub fn of_counts(counts: &BTreeMap<u32, u64>, mu: f64) -> TTest {
-        let n: u64 = counts.values().sum();
-        let sum: u128 = counts.iter().map(|(x, k)| u128::from(*x) * u128::from(*k)).sum();
-        let squares: u128 = counts.iter().map(|(x, k)| u128::from(*x).pow(2) * u128::from(*k)).sum();
-        if n == 0 {
+        let table: Vec<(f64, u64)> = counts.iter().map(|(x, k)| (f64::from(*x), *k)).collect();
+        if let Ok(test) = t_test_from_counts(&table, mu) {
+            let (mean, sd) = (Some(test.mean), Some(test.sd));
             return TTest {
-                note: Some("no participant has answered all pairs yet".to_owned()),
-                ..TTest::default()
+                n: test.n,
+                mean,
+                sd,
+                t: Some(test.t),
+                df: Some(test.df),
+                p: Some(test.p),
+                note: None,
             };
         }
-        let mean = sum as f64 / n as f64;
-        if n == 1 {
-            let note = Some("one participant alone has no standard deviation".to_owned());
-            return TTest { n, mean: Some(mean), note, ..TTest::default() };
-        }
-        let df = (n - 1) as f64;
-        let scaled_variance = u128::from(n) * squares - sum * sum;
-        let sd = (scaled_variance as f64 / (n as f64 * df)).sqrt();
-        if scaled_variance == 0 {
-            let note = Some("all participants chose the same number: t is not defined".to_owned());
-            return TTest { n, mean: Some(mean), sd: Some(0.0), df: Some(df), note, ..TTest::default() };
-        }
-        let t = (mean - mu) / (sd / (n as f64).sqrt());
-        TTest { n, mean: Some(mean), sd: Some(sd), t: Some(t), df: Some(df), p: None, note: None }
+        // What has no t still has what can be said of it.
+        let n: u64 = counts.values().sum();
+        let sum: u64 = counts.iter().map(|(x, k)| u64::from(*x) * k).sum();
+        let mean = (n > 0).then(|| sum as f64 / n as f64);
+        let (sd, note) = match n {
+            0 => (None, "no participant has answered all pairs yet"),
+            1 => (None, "one participant alone has no standard deviation"),
+            _ => (Some(0.0), "all participants chose the same number: t is not defined"),
+        };
+        let df = (n > 1).then(|| (n - 1) as f64);
+        TTest { n, mean, sd, t: None, df, p: None, note: Some(note.to_owned()) }
     }
 }
 

@@ -21,7 +21,8 @@ pub(crate) async fn get_studies(_: Researcher, State(app): State<Arc<App>>) -> R
             Stimuli::Ready(_) => ("ready", Value::Null),
             Stimuli::Failed(reason) => ("failed", Value::String(reason)),
             Stimuli::Preparing(making) => {
-                let progress = making.map(|m| json!({ "done": m.done, "total": m.total, "stimulus": m.stimulus }));
+                let progress =
+                    making.map(|m| json!({ "done": m.done, "total": m.total, "stimulus": m.stimulus }));
                 ("preparing", progress.unwrap_or(Value::Null))
             }
         };

@@ -33,7 +33,8 @@ pub(crate) async fn post_login(State(app): State<Arc<App>>, request: Request) ->
     let hash = app.store.password_hash(RESEARCHER).await?;
     let hash = hash.ok_or_else(|| ApiError::internal("no researcher password is set"))?;
     let permit = app.judging.acquire().await.map_err(ApiError::internal)?;
-    let right = tokio::task::spawn_blocking(move || verify(&password, &hash)).await.map_err(ApiError::internal)?;
+    let right =
+        tokio::task::spawn_blocking(move || verify(&password, &hash)).await.map_err(ApiError::internal)?;
     drop(permit);
     if !right {
         return Err(ApiError::new(StatusCode::UNAUTHORIZED, "wrong_password", "That is not the password."));
@@ -44,7 +45,10 @@ pub(crate) async fn post_login(State(app): State<Arc<App>>, request: Request) ->
     Ok(no_content(&app, &token, LASTING.as_secs()))
 }
 
-pub(crate) async fn post_logout(State(app): State<Arc<App>>, headers: HeaderMap) -> Result<Response, ApiError> {
+pub(crate) async fn post_logout(
+    State(app): State<Arc<App>>,
+    headers: HeaderMap,
+) -> Result<Response, ApiError> {
     if let Some(token) = cookie(&headers, COOKIE) {
         app.store.sign_out(&sha256_hex(token.as_bytes())).await?;
     }
@@ -54,5 +58,6 @@ pub(crate) async fn post_logout(State(app): State<Arc<App>>, headers: HeaderMap)
 fn no_content(app: &App, token: &str, seconds: u64) -> Response {
     let secure = if app.secure_cookies { "; Secure" } else { "" };
     let cookie = format!("{COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/; Max-Age={seconds}{secure}");
-    (StatusCode::NO_CONTENT, [(header::SET_COOKIE, cookie), (header::CACHE_CONTROL, "no-store".to_owned())]).into_response()
+    (StatusCode::NO_CONTENT, [(header::SET_COOKIE, cookie), (header::CACHE_CONTROL, "no-store".to_owned())])
+        .into_response()
 }

@@ -7,7 +7,9 @@ use crate::password::{random_code, random_token};
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
-use kelir_store::{Appended, Completed, NewResponse, NewSession, PlannedSession, PlannedTrial, Session, sha256_hex};
+use kelir_store::{
+    Appended, Completed, NewResponse, NewSession, PlannedSession, PlannedTrial, Session, sha256_hex,
+};
 use kelir_study::{StudyDefinition, TrialPlan};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -92,7 +94,8 @@ pub(crate) async fn put_trial(
     let session = authorised(&app, &session, &headers).await?;
     let no_trial = || ApiError::not_found("trial");
     // Plain digits alone: "+1" and "01" are other addresses, not other names of a trial.
-    let trial_index: u32 = trial.parse().ok().filter(|i: &u32| i.to_string() == trial).ok_or_else(no_trial)?;
+    let trial_index: u32 =
+        trial.parse().ok().filter(|i: &u32| i.to_string() == trial).ok_or_else(no_trial)?;
     if session.consented_at.is_none() {
         return Err(ApiError::conflict("no_consent", "An answer can be stored only after consent."));
     }
@@ -249,7 +252,11 @@ fn check_columns(body: &Object) -> Result<(), ApiError> {
     }
     match body.0.get("viewport") {
         None | Some(Value::Null) => Ok(()),
-        Some(Value::Array(size)) if size.len() == 2 && size.iter().all(|v| v.as_f64().is_some_and(|x| x >= 0.0)) => Ok(()),
+        Some(Value::Array(size))
+            if size.len() == 2 && size.iter().all(|v| v.as_f64().is_some_and(|x| x >= 0.0)) =>
+        {
+            Ok(())
+        }
         Some(_) => Err(ApiError::field("viewport", "must be [width, height]")),
     }
 }

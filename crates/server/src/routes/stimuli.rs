@@ -17,8 +17,10 @@ pub(crate) async fn get_stimulus(
     let (info, bytes) = app.store.stimulus(&sha256).await?.ok_or_else(missing)?;
     let etag = format!("\"{sha256}\"");
     let known = headers.get(header::IF_NONE_MATCH).and_then(|v| v.to_str().ok());
-    let known = known.is_some_and(|tags| tags.split(',').any(|tag| tag.trim().trim_start_matches("W/") == etag));
-    let keep = [(header::ETAG, etag), (header::CACHE_CONTROL, "public, max-age=31536000, immutable".to_owned())];
+    let known =
+        known.is_some_and(|tags| tags.split(',').any(|tag| tag.trim().trim_start_matches("W/") == etag));
+    let keep =
+        [(header::ETAG, etag), (header::CACHE_CONTROL, "public, max-age=31536000, immutable".to_owned())];
     if known {
         return Ok((StatusCode::NOT_MODIFIED, keep).into_response());
     }

@@ -14,10 +14,13 @@ fn the_papers_counts_give_the_issues_numbers() {
     close(test.mean, 0.8125, 1e-15);
     close(test.sd, 0.737_804, 1e-6);
     close(test.t, -1.437_591, 1e-6);
+    close(test.p, 0.160_568_633_894_124_73, 1e-12); // R 4.2.2, as the t
     let test = TTest::of_counts(&[(0, 3), (1, 10), (2, 19)].into(), 1.0);
     close(test.t, 4.208_834, 1e-6);
+    close(test.p, 2.037_821_916_722_820_6e-4, 1e-12);
     let test = TTest::of_counts(&[(0, 26), (1, 7)].into(), 0.5);
     close(test.t, -3.983_482, 1e-6);
+    close(test.p, 3.668_638_983_360_312e-4, 1e-12);
 }
 
 #[test]
