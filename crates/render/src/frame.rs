@@ -52,6 +52,9 @@ pub struct Layer {
 pub struct Stats {
     /// Name → count: what was done and what was skipped.
     pub counts: std::collections::BTreeMap<String, u64>,
+    /// Name → measured number; MC's `se_mean`, `se_rms` and `se_max` are its standard error over penumbra pixels
+    /// (the largest channel), in units of the brightest unshadowed pixel.
+    pub values: std::collections::BTreeMap<String, f64>,
     /// (step, milliseconds of wall time).
     pub steps_ms: Vec<(String, f64)>,
 }

@@ -1,14 +1,37 @@
-//! Monte Carlo: an unbiased estimate of each emitter's irradiance with a standard error per pixel.
+//! Monte Carlo: an unbiased estimate of each emitter's irradiance E_k, with a standard error per pixel.
+//!
+//! Owen-scrambled Sobol points spread over the emitter (and over the pixel for `area`); sixteen independent scrambles
+//! give sixteen estimates whose spread is the standard error. What is estimated is the *deviation* from a visibility V₀:
+//!
+//! > E / L = E⁰ · V₀ + A · mean((V − V₀) · cosθ cosθ / r²)
+//!
+//! Where the masks' bounds say that everything a pixel can see has one transmittance, V₀ is that transmittance and the
+//! mean is exactly zero, sampled or not: no samples are spent there and the bytes are the same. Elsewhere V₀ = 0. No
+//! pilot run decides anything, so the estimate stays unbiased.
 
+mod bounds;
+mod estimate;
+mod native;
+mod plan;
+mod points;
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+use kelir_scene::{Ambient, Theatre};
 use serde::{Deserialize, Serialize};
 
-use crate::{Backend, RenderError, Renderer};
+use crate::{Backend, Frame, Layer, RenderError, Renderer, Stats, View, albedo, irradiance};
+use bounds::Padded;
+use estimate::{Estimator, Row};
+use points::{Points, REPLICATES};
 
 /// What can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Knobs {
-    /// Samples per pixel and emitter, rounded up to a multiple of the 16 scrambles.
+    /// Samples per pixel and emitter in penumbra, 1..=2²⁰, rounded up to a multiple of the 16 scrambles.
     pub spp: u32,
     /// Seed of the scrambles.
     pub seed: u64,
@@ -21,6 +44,175 @@ impl Default for Knobs {
 }
 
 /// The renderer for `knobs` on `backend`.
-pub fn renderer(_knobs: &Knobs, _backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
-    Err(RenderError::Gpu("mc is not built yet".into()))
+pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
+    if !(1..=1 << 20).contains(&knobs.spp) {
+        return Err(RenderError::Knob(format!("spp = {}: 1 to 1048576 samples per pixel", knobs.spp)));
+    }
+    if backend == Backend::Gpu {
+        return Err(RenderError::Gpu("mc on the gpu is not built yet".into()));
+    }
+    Ok(Box::new(Mc { knobs: *knobs, masks: HashMap::new(), points: None, lit: Vec::new() }))
 }
+
+/// Keeps masks, points and E⁰ between frames.
+struct Mc {
+    knobs: Knobs,
+    masks: HashMap<u64, Arc<Padded>>,
+    points: Option<(usize, Points)>,
+    /// E⁰ of each emitter at unit radiance, and what it was made for.
+    lit: Vec<(String, Arc<Vec<f64>>)>,
+}
+
+impl Mc {
+    /// Draws all rows; `layers` asks for more than the radiance.
+    fn rows(
+        &mut self,
+        theatre: &Theatre,
+        view: &View,
+        layers: bool,
+    ) -> Result<(Vec<Row>, Stats), RenderError> {
+        if matches!(theatre.ambient, Ambient::Dome { .. }) {
+            let reason = "ambient.model = \"dome\" is not drawn yet".into();
+            return Err(RenderError::Inapplicable { technique: "mc", reason });
+        }
+        let mut stats = Stats::default();
+        let clock = Instant::now();
+        let samples = (self.knobs.spp as usize).div_ceil(REPLICATES);
+        self.prepare(theatre, view, samples);
+        let masks: Vec<_> = theatre.planes.iter().map(|p| self.masks[&p.mask.id].clone()).collect();
+        let plan = plan::Plan::new(theatre, view, &masks)?;
+        let estimator = Estimator {
+            theatre,
+            plan: &plan,
+            masks: &masks,
+            lit: self.lit.iter().map(|(_, image)| image.as_slice()).collect(),
+            albedo: &albedo::on_grid(&theatre.screen, view),
+            points: self.points.as_ref().map(|(_, p)| p).expect("prepared"),
+            samples,
+            seed: points::fold(self.knobs.seed),
+            skip: view.skip,
+            layers,
+        };
+        stats.steps_ms.push(("prepare".into(), clock.elapsed().as_secs_f64() * 1e3));
+        let clock = Instant::now();
+        let rows = estimator.rows();
+        stats.steps_ms.push(("sample".into(), clock.elapsed().as_secs_f64() * 1e3));
+        self.count(&rows, samples, plan.emitters.len(), view, &mut stats);
+        Ok((rows, stats))
+    }
+
+    /// Brings masks, points and E⁰ up to date with the theatre, and forgets what it no longer uses.
+    fn prepare(&mut self, theatre: &Theatre, view: &View, samples: usize) {
+        self.masks.retain(|id, _| theatre.planes.iter().any(|p| p.mask.id == *id));
+        for plane in &theatre.planes {
+            self.masks.entry(plane.mask.id).or_insert_with(|| Arc::new(Padded::new(&plane.mask)));
+        }
+        if self.points.as_ref().is_none_or(|(n, _)| *n != samples) {
+            self.points = Some((samples, Points::new(self.knobs.seed, samples)));
+        }
+        let lamp = &theatre.lamp;
+        let old = std::mem::take(&mut self.lit);
+        for emitter in &lamp.emitters {
+            let screen = [theatre.screen.width_m, theatre.screen.height_m];
+            let key = format!("{:?} {:?} {:?} {:?}", emitter.shape, lamp.position_m, screen, view.size);
+            let image = match old.iter().find(|(k, _)| *k == key) {
+                Some((_, image)) => image.clone(),
+                None => Arc::new(irradiance::unit_image(
+                    &emitter.shape,
+                    lamp.position_m,
+                    &theatre.screen,
+                    view.size,
+                )),
+            };
+            self.lit.push((key, image));
+        }
+    }
+
+    fn count(&self, rows: &[Row], samples: usize, emitters: usize, view: &View, stats: &mut Stats) {
+        let spp = (samples * REPLICATES) as u64;
+        let jobs = rows.iter().map(|r| r.jobs).sum::<u64>();
+        let penumbra = rows.iter().map(|r| r.penumbra).sum::<u64>();
+        let pixels = (view.size[0] * view.size[1]) as u64;
+        for (name, count) in [
+            ("spp", spp),
+            ("replicates", REPLICATES as u64),
+            ("pixels", pixels),
+            ("pixels_in_penumbra", penumbra),
+            ("samples", jobs * spp),
+            ("samples_skipped", (pixels * emitters as u64).saturating_sub(jobs) * spp),
+        ] {
+            stats.counts.insert(name.into(), count);
+        }
+        let full = rows.iter().map(|r| r.brightest).fold(0.0, f64::max);
+        if full > 0.0 {
+            let sum = rows.iter().map(|r| r.error_sum).sum::<f64>();
+            let square = rows.iter().map(|r| r.error_square).sum::<f64>();
+            let max = rows.iter().map(|r| r.error_max).fold(0.0, f64::max);
+            let n = penumbra.max(1) as f64;
+            stats.values.insert("se_mean".into(), sum / n / full);
+            stats.values.insert("se_rms".into(), (square / n).sqrt() / full);
+            stats.values.insert("se_max".into(), max / full);
+        }
+    }
+}
+
+impl Renderer for Mc {
+    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
+        let (rows, stats) = self.rows(theatre, view, true)?;
+        let n = view.size[0] * view.size[1];
+        let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
+        let mut names: Vec<String> = ["SE.R", "SE.G", "SE.B"].map(String::from).to_vec();
+        for emitter in &theatre.lamp.emitters {
+            match coloured {
+                true => names.extend(["R", "G", "B"].map(|c| format!("Virr.{}.{c}", emitter.name))),
+                false => names.push(format!("Virr.{}", emitter.name)),
+            }
+        }
+        let mut planes: Vec<Vec<f32>> = (0..3 + names.len()).map(|_| Vec::with_capacity(n)).collect();
+        for row in &rows {
+            for (plane, values) in planes.iter_mut().zip(row.values.chunks_exact(view.size[0])) {
+                plane.extend_from_slice(values);
+            }
+        }
+        let mut planes = planes.into_iter();
+        let radiance = [(); 3].map(|()| planes.next().expect("three planes of radiance"));
+        let layers = names.into_iter().zip(planes).map(|(name, values)| Layer { name, values }).collect();
+        Ok(Frame { size: view.size, radiance, layers, stats })
+    }
+
+    fn display(
+        &mut self,
+        theatre: &Theatre,
+        view: &View,
+        white: f64,
+        out: &mut [u32],
+    ) -> Result<Stats, RenderError> {
+        let (rows, stats) = self.rows(theatre, view, false)?;
+        let width = view.size[0];
+        for (out, row) in out.chunks_exact_mut(width).zip(&rows) {
+            for (i, pixel) in out.iter_mut().enumerate() {
+                let rgb = [0, 1, 2].map(|c| f64::from(row.values[c * width + i]) / white);
+                *pixel = encode(rgb);
+            }
+        }
+        Ok(stats)
+    }
+
+    fn adapter(&self) -> String {
+        let width = native::vector_width();
+        format!("native {} threads {width}", rayon::current_num_threads())
+    }
+}
+
+/// sRGB codes of display-linear values.
+fn encode(rgb: [f64; 3]) -> u32 {
+    let [r, g, b] = rgb.map(|v| {
+        let v = v.clamp(0.0, 1.0);
+        let s = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+        (s * 255.0).round() as u32
+    });
+    0xff00_0000 | b << 16 | g << 8 | r
+}
+
+#[cfg(test)]
+mod tests;

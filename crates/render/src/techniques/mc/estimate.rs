@@ -1,0 +1,219 @@
+//! From replicates' sums to radiance and its standard error, row by row.
+
+use std::sync::Arc;
+
+use kelir_scene::{Ambient, Theatre};
+use rayon::prelude::*;
+
+use super::bounds::Padded;
+use super::native::Sampler;
+use super::plan::Plan;
+use super::points::{Points, REPLICATES};
+use crate::albedo::PixelAlbedo;
+use crate::ambient;
+
+/// Everything that a row needs.
+pub struct Estimator<'a> {
+    pub theatre: &'a Theatre,
+    pub plan: &'a Plan,
+    pub masks: &'a [Arc<Padded>],
+    /// E⁰ at unit radiance, one image an emitter.
+    pub lit: Vec<&'a [f64]>,
+    pub albedo: &'a PixelAlbedo,
+    pub points: &'a Points,
+    /// Points per replicate.
+    pub samples: usize,
+    /// Folded seed.
+    pub seed: u32,
+    pub skip: bool,
+    pub layers: bool,
+}
+
+/// One finished row.
+#[derive(Default)]
+pub struct Row {
+    /// Planes of `width` values: radiance R, G, B; and with layers SE R, G, B, then visibilities.
+    pub values: Vec<f32>,
+    /// (Pixel, emitter, planes) estimates that were sampled.
+    pub jobs: u64,
+    /// Pixels where anything varies.
+    pub penumbra: u64,
+    /// Largest unshadowed radiance.
+    pub brightest: f64,
+    /// Sum, sum of squares and maximum over penumbra pixels of the standard error's largest channel.
+    pub error_sum: f64,
+    pub error_square: f64,
+    pub error_max: f64,
+}
+
+/// The estimate of one emitter's visibility through some planes: V₀ and the replicates' deviations from it, both in E / L.
+#[derive(Clone, Copy)]
+struct Estimate {
+    base: [f64; 3],
+    /// `None` where the bounds say that all deviations are zero.
+    deviation: Option<[[f64; REPLICATES]; 3]>,
+}
+
+impl Estimate {
+    fn mean(&self, c: usize) -> f64 {
+        self.base[c] + self.deviation.map_or(0.0, |d| d[c].iter().sum::<f64>() / REPLICATES as f64)
+    }
+
+    fn replicate(&self, c: usize, r: usize) -> f64 {
+        self.base[c] + self.deviation.map_or(0.0, |d| d[c][r])
+    }
+}
+
+impl Estimator<'_> {
+    /// Every row, first on top, on all cores; the result does not depend on how many there are.
+    pub fn rows(&self) -> Vec<Row> {
+        (0..self.plan.size[1]).into_par_iter().map(|j| self.row(j)).collect()
+    }
+
+    fn row(&self, j: usize) -> Row {
+        let width = self.plan.size[0];
+        let emitters = self.plan.emitters.len();
+        let extra = if self.layers { 3 + emitters * self.plan.channels } else { 0 };
+        let mut row = Row { values: vec![0.0; width * (3 + extra)], ..Row::default() };
+        // With several planes the paper's ambient light needs each plane's own visibility too.
+        let alone = matches!(self.theatre.ambient, Ambient::Paper { .. }) && self.masks.len() > 1;
+        let subsets = 1 + if alone { self.masks.len() } else { 0 };
+        let mut estimates = Vec::with_capacity(emitters * subsets);
+        for i in 0..width {
+            estimates.clear();
+            let mut penumbra = false;
+            for subset in 0..subsets {
+                let planes = if subset == 0 { 0..self.masks.len() } else { subset - 1..subset };
+                for k in 0..emitters {
+                    let (estimate, varies) = self.estimate(k, i, j, planes.clone(), &mut row.jobs);
+                    estimates.push(estimate);
+                    penumbra |= varies;
+                }
+            }
+            self.finish(i, j, &estimates, penumbra, &mut row);
+        }
+        row
+    }
+
+    /// The estimate and whether the bounds leave room for a penumbra.
+    fn estimate(
+        &self,
+        k: usize,
+        i: usize,
+        j: usize,
+        planes: std::ops::Range<usize>,
+        jobs: &mut u64,
+    ) -> (Estimate, bool) {
+        let known = self.known(k, i, j, planes.clone());
+        let v0 = known.unwrap_or([0.0; 3]);
+        let full: f64 = self.masks[planes.clone()].iter().map(|m| f64::from(m.max_code)).product();
+        let lit = self.lit[k][j * self.plan.size[0] + i];
+        let base = v0.map(|v| lit * (f64::from(v) / full));
+        if known.is_some() && self.skip {
+            return (Estimate { base, deviation: None }, false);
+        }
+        *jobs += 1;
+        let sampler = Sampler {
+            plan: self.plan,
+            masks: self.masks,
+            points: self.points,
+            samples: self.samples,
+            seed: self.seed,
+            planes,
+        };
+        let scale = self.plan.emitters[k].scale / (self.samples as f64 * full);
+        let deviation = match self.plan.channels {
+            1 => [sampler.sums::<1>(k, i, j, [v0[0]])[0]; 3],
+            _ => sampler.sums::<3>(k, i, j, v0),
+        };
+        (Estimate { base, deviation: Some(deviation.map(|d| d.map(|s| s * scale))) }, known.is_none())
+    }
+
+    /// The product of codes where the bounds say that it is one value: all planes constant, or one of them opaque.
+    fn known(&self, k: usize, i: usize, j: usize, planes: std::ops::Range<usize>) -> Option<[f32; 3]> {
+        let mut product = Some([1f32; 3]);
+        for (map, mask) in self.plan.emitters[k].planes[planes.clone()].iter().zip(&self.masks[planes]) {
+            let (x, y) = (map.columns[i].range, map.rows[j].range);
+            if !mask.is_constant(x, y) {
+                product = None;
+                continue;
+            }
+            let codes = [0, 1, 2].map(|c| f32::from(mask.code(c, x.first, y.first)));
+            if codes == [0.0; 3] {
+                return Some(codes);
+            }
+            product = product.map(|p| [0, 1, 2].map(|c| p[c] * codes[c]));
+        }
+        product
+    }
+
+    /// Radiance, standard error and layers of one pixel into `row`.
+    fn finish(&self, i: usize, j: usize, estimates: &[Estimate], penumbra: bool, row: &mut Row) {
+        let width = self.plan.size[0];
+        let pixel = j * width + i;
+        let emitters = &self.theatre.lamp.emitters;
+        let mut error = 0f64;
+        for c in 0..3 {
+            let reflect = f64::from(self.albedo.at(c, pixel)) / std::f64::consts::PI;
+            let lit: f64 = emitters.iter().zip(&self.lit).map(|(e, lit)| e.radiance[c] * lit[pixel]).sum();
+            let lamp = |subset: usize, of: &dyn Fn(&Estimate) -> f64| -> f64 {
+                let estimates = &estimates[subset * emitters.len()..];
+                emitters.iter().zip(estimates).map(|(e, estimate)| e.radiance[c] * of(estimate)).sum()
+            };
+            let radiance =
+                |of: &dyn Fn(&Estimate) -> f64| reflect * self.irradiance(c, lit, &|s| lamp(s, of));
+            row.values[c * width + i] = radiance(&|e| e.mean(c)) as f32;
+            row.brightest = row.brightest.max(reflect * lit);
+            if estimates.iter().any(|e| e.deviation.is_some()) {
+                let replicates: [f64; REPLICATES] = std::array::from_fn(|r| radiance(&|e| e.replicate(c, r)));
+                let se = standard_error(&replicates);
+                error = error.max(se);
+                if self.layers {
+                    row.values[(3 + c) * width + i] = se as f32;
+                }
+            }
+        }
+        if penumbra {
+            row.penumbra += 1;
+            row.error_sum += error;
+            row.error_square += error * error;
+            row.error_max = row.error_max.max(error);
+        }
+        if self.layers {
+            let channels = self.plan.channels;
+            for (k, estimate) in estimates[..emitters.len()].iter().enumerate() {
+                for c in 0..channels {
+                    let visibility = estimate.mean(c) / self.lit[k][pixel];
+                    row.values[(6 + k * channels + c) * width + i] = visibility as f32;
+                }
+            }
+        }
+    }
+
+    /// The screen's irradiance in channel `c` with the ambient light: `lamp(0)` is Σ L_k E_k through all planes,
+    /// `lamp(1 + i)` through plane i alone, `lit` without planes.
+    fn irradiance(&self, c: usize, lit: f64, lamp: &dyn Fn(usize) -> f64) -> f64 {
+        let direct = lamp(0);
+        match self.theatre.ambient {
+            Ambient::Paper { k_d_m, s } if lit > 0.0 => {
+                let planes = self.theatre.planes.iter().enumerate();
+                let several = self.theatre.planes.len() > 1;
+                let distance = ambient::distance_m(planes.map(|(i, plane)| {
+                    let visibility = if several { lamp(1 + i) / lit } else { 0.0 };
+                    (plane.centre_m.z.abs(), visibility)
+                }));
+                direct + lit * ambient::share(direct / lit, distance, k_d_m, s[c])
+            }
+            _ => direct,
+        }
+    }
+}
+
+/// Standard error of the mean of independent replicates; exactly 0 where all are equal.
+fn standard_error(replicates: &[f64; REPLICATES]) -> f64 {
+    let n = REPLICATES as f64;
+    let shifted = replicates.map(|v| v - replicates[0]);
+    let mean = shifted.iter().sum::<f64>() / n;
+    let square: f64 = shifted.iter().map(|v| (v - mean) * (v - mean)).sum();
+    (square / (n * (n - 1.0))).sqrt()
+}
