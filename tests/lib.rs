@@ -17,7 +17,11 @@ pub fn root() -> PathBuf {
 pub fn binary() -> PathBuf {
     let test = std::env::current_exe().unwrap();
     let path = test.parent().unwrap().parent().unwrap().join("kelir");
-    assert!(path.is_file(), "{} is missing: run `cargo build --workspace` first (cargo xtask test does)", path.display());
+    assert!(
+        path.is_file(),
+        "{} is missing: run `cargo build --workspace` first (cargo xtask test does)",
+        path.display()
+    );
     path
 }
 
@@ -67,7 +71,8 @@ impl Server {
         }
         // Keep the pipe drained, or the server would block on a full one.
         std::thread::spawn(move || lines.for_each(drop));
-        let server = Self { child, base: base.expect("the server prints its links"), data: data.to_path_buf() };
+        let server =
+            Self { child, base: base.expect("the server prints its links"), data: data.to_path_buf() };
         server.wait(if ready { "/api/v1/studies/shadow-puppets" } else { "/healthz" });
         server
     }
@@ -123,7 +128,8 @@ impl Drop for Server {
 
 /// Rows of a query, read with the sqlite3 shell: a program that is not ours.
 pub fn sql(database: &Path, query: &str) -> Vec<Value> {
-    let out = Command::new("sqlite3").arg("-json").arg(database).arg(query).output().expect("sqlite3 is installed");
+    let out =
+        Command::new("sqlite3").arg("-json").arg(database).arg(query).output().expect("sqlite3 is installed");
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     if out.stdout.trim_ascii().is_empty() { Vec::new() } else { serde_json::from_slice(&out.stdout).unwrap() }
 }
@@ -131,7 +137,10 @@ pub fn sql(database: &Path, query: &str) -> Vec<Value> {
 /// Runs a script of tests/browser with one JSON argument and answers the JSON of its last line.
 pub fn browser(script: &str, argument: &Value) -> Value {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    assert!(folder.join("node_modules/playwright-core").is_dir(), "run `npm ci --ignore-scripts` in tests/ first");
+    assert!(
+        folder.join("node_modules/playwright-core").is_dir(),
+        "run `npm ci --ignore-scripts` in tests/ first"
+    );
     let out = Command::new("node")
         .arg(folder.join("browser").join(script))
         .arg(argument.to_string())

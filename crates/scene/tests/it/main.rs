@@ -2,5 +2,6 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 mod good;
+mod posed;
 mod refused;
 mod support;
