@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use bytemuck::{Pod, Zeroable};
 use kelir_scene::{Ambient, Theatre};
 use rayon::prelude::*;
 
@@ -10,7 +11,7 @@ use super::native::Sampler;
 use super::plan::Plan;
 use super::points::{Points, REPLICATES};
 use crate::albedo::PixelAlbedo;
-use crate::ambient;
+use crate::{RenderError, ambient};
 
 /// Everything that a row needs.
 pub struct Estimator<'a> {
@@ -28,6 +29,24 @@ pub struct Estimator<'a> {
     pub skip: bool,
     pub layers: bool,
 }
+
+/// One estimate to sample: the light of one emitter through planes `first..end` at one pixel, and the product of codes
+/// that it deviates from.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Job {
+    pub x: u32,
+    pub y: u32,
+    pub emitter: u32,
+    pub first: u32,
+    pub end: u32,
+    pub v0_r: f32,
+    pub v0_g: f32,
+    pub v0_b: f32,
+}
+
+/// Where sums of (V − V₀) · weight come from, channel by channel (grey scenes: the first alone counts).
+type Source<'a> = &'a mut dyn FnMut(&Job) -> [[f64; REPLICATES]; 3];
 
 /// One finished row.
 #[derive(Default)]
@@ -67,10 +86,71 @@ impl Estimate {
 impl Estimator<'_> {
     /// Every row, first on top, on all cores; the result does not depend on how many there are.
     pub fn rows(&self) -> Vec<Row> {
-        (0..self.plan.size[1]).into_par_iter().map(|j| self.row(j)).collect()
+        (0..self.plan.size[1]).into_par_iter().map(|j| self.row(j, &mut |job| self.native(job))).collect()
     }
 
-    fn row(&self, j: usize) -> Row {
+    /// Every row with sums from `draw`, which is handed the jobs of many rows at a time: `channels * REPLICATES` sums each.
+    pub fn rows_by(
+        &self,
+        mut draw: impl FnMut(&[Job]) -> Result<Vec<f32>, RenderError>,
+    ) -> Result<Vec<Row>, RenderError> {
+        /// Jobs are gathered until there are about this many.
+        const ENOUGH: usize = 1 << 19;
+        let (width, height) = (self.plan.size[0], self.plan.size[1]);
+        let band = (ENOUGH / (width * self.plan.emitters.len()).max(1)).max(1);
+        let per_job = self.plan.channels * REPLICATES;
+        let mut rows = Vec::with_capacity(height);
+        for first in (0..height).step_by(band) {
+            let these = first..(first + band).min(height);
+            let wanted: Vec<Vec<Job>> = these
+                .clone()
+                .into_par_iter()
+                .map(|j| {
+                    let mut jobs = Vec::new();
+                    self.row(j, &mut |job| {
+                        jobs.push(*job);
+                        [[0.0; REPLICATES]; 3]
+                    });
+                    jobs
+                })
+                .collect();
+            let sums = draw(&wanted.concat())?;
+            let mut starts = vec![0];
+            starts.extend(wanted.iter().scan(0, |sum, jobs| {
+                *sum += jobs.len() * per_job;
+                Some(*sum)
+            }));
+            rows.par_extend(these.clone().into_par_iter().map(|j| {
+                let mut sums = sums[starts[j - first]..].chunks_exact(per_job);
+                self.row(j, &mut |_| {
+                    let sums = sums.next().expect("as many sums as jobs");
+                    std::array::from_fn(|c| {
+                        let c = c.min(self.plan.channels - 1) * REPLICATES;
+                        std::array::from_fn(|r| f64::from(sums[c + r]))
+                    })
+                })
+            }));
+        }
+        Ok(rows)
+    }
+
+    fn native(&self, job: &Job) -> [[f64; REPLICATES]; 3] {
+        let sampler = Sampler {
+            plan: self.plan,
+            masks: self.masks,
+            points: self.points,
+            samples: self.samples,
+            seed: self.seed,
+            planes: job.first as usize..job.end as usize,
+        };
+        let (k, i, j) = (job.emitter as usize, job.x as usize, job.y as usize);
+        match self.plan.channels {
+            1 => [sampler.sums::<1>(k, i, j, [job.v0_r])[0]; 3],
+            _ => sampler.sums::<3>(k, i, j, [job.v0_r, job.v0_g, job.v0_b]),
+        }
+    }
+
+    fn row(&self, j: usize, source: Source) -> Row {
         let width = self.plan.size[0];
         let emitters = self.plan.emitters.len();
         let extra = if self.layers { 3 + emitters * self.plan.channels } else { 0 };
@@ -85,7 +165,8 @@ impl Estimator<'_> {
             for subset in 0..subsets {
                 let planes = if subset == 0 { 0..self.masks.len() } else { subset - 1..subset };
                 for k in 0..emitters {
-                    let (estimate, varies) = self.estimate(k, i, j, planes.clone(), &mut row.jobs);
+                    let (estimate, varies) = self.estimate(k, [i, j], planes.clone(), source);
+                    row.jobs += u64::from(estimate.deviation.is_some());
                     estimates.push(estimate);
                     penumbra |= varies;
                 }
@@ -99,34 +180,22 @@ impl Estimator<'_> {
     fn estimate(
         &self,
         k: usize,
-        i: usize,
-        j: usize,
+        [i, j]: [usize; 2],
         planes: std::ops::Range<usize>,
-        jobs: &mut u64,
+        source: Source,
     ) -> (Estimate, bool) {
         let known = self.known(k, i, j, planes.clone());
-        let v0 = known.unwrap_or([0.0; 3]);
+        let [v0_r, v0_g, v0_b] = known.unwrap_or([0.0; 3]);
         let full: f64 = self.masks[planes.clone()].iter().map(|m| f64::from(m.max_code)).product();
         let lit = self.lit[k][j * self.plan.size[0] + i];
-        let base = v0.map(|v| lit * (f64::from(v) / full));
+        let base = [v0_r, v0_g, v0_b].map(|v| lit * (f64::from(v) / full));
         if known.is_some() && self.skip {
             return (Estimate { base, deviation: None }, false);
         }
-        *jobs += 1;
-        let sampler = Sampler {
-            plan: self.plan,
-            masks: self.masks,
-            points: self.points,
-            samples: self.samples,
-            seed: self.seed,
-            planes,
-        };
+        let (x, y, first, end) = (i as u32, j as u32, planes.start as u32, planes.end as u32);
+        let sums = source(&Job { x, y, emitter: k as u32, first, end, v0_r, v0_g, v0_b });
         let scale = self.plan.emitters[k].scale / (self.samples as f64 * full);
-        let deviation = match self.plan.channels {
-            1 => [sampler.sums::<1>(k, i, j, [v0[0]])[0]; 3],
-            _ => sampler.sums::<3>(k, i, j, v0),
-        };
-        (Estimate { base, deviation: Some(deviation.map(|d| d.map(|s| s * scale))) }, known.is_none())
+        (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none())
     }
 
     /// The product of codes where the bounds say that it is one value: all planes constant, or one of them opaque.

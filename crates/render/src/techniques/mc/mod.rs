@@ -11,6 +11,7 @@
 
 mod bounds;
 mod estimate;
+mod gpu;
 mod native;
 mod plan;
 mod points;
@@ -48,10 +49,8 @@ pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, Re
     if !(1..=1 << 20).contains(&knobs.spp) {
         return Err(RenderError::Knob(format!("spp = {}: 1 to 1048576 samples per pixel", knobs.spp)));
     }
-    if backend == Backend::Gpu {
-        return Err(RenderError::Gpu("mc on the gpu is not built yet".into()));
-    }
-    Ok(Box::new(Mc { knobs: *knobs, masks: HashMap::new(), points: None, lit: Vec::new() }))
+    let gpu = crate::gpu::choose(backend)?.map(|gpu| gpu::Sampler::new(gpu, gpu::WGSL)).transpose()?;
+    Ok(Box::new(Mc::new(*knobs, gpu)))
 }
 
 /// Keeps masks, points and E⁰ between frames.
@@ -61,9 +60,15 @@ struct Mc {
     points: Option<(usize, Points)>,
     /// E⁰ of each emitter at unit radiance, and what it was made for.
     lit: Vec<(String, Arc<Vec<f64>>)>,
+    /// `None` draws on the CPU.
+    gpu: Option<gpu::Sampler>,
 }
 
 impl Mc {
+    fn new(knobs: Knobs, gpu: Option<gpu::Sampler>) -> Self {
+        Self { knobs, masks: HashMap::new(), points: None, lit: Vec::new(), gpu }
+    }
+
     /// Draws all rows; `layers` asks for more than the radiance.
     fn rows(
         &mut self,
@@ -95,9 +100,16 @@ impl Mc {
         };
         stats.steps_ms.push(("prepare".into(), clock.elapsed().as_secs_f64() * 1e3));
         let clock = Instant::now();
-        let rows = estimator.rows();
+        let rows = match &mut self.gpu {
+            None => estimator.rows(),
+            Some(gpu) => {
+                let ids: Vec<_> = theatre.planes.iter().map(|p| p.mask.id).collect();
+                let scene = gpu.prepare(&plan, &ids, &masks, estimator.points, samples, estimator.seed)?;
+                estimator.rows_by(|jobs| gpu.run(&scene, jobs))?
+            }
+        };
         stats.steps_ms.push(("sample".into(), clock.elapsed().as_secs_f64() * 1e3));
-        self.count(&rows, samples, plan.emitters.len(), view, &mut stats);
+        count(&rows, samples, plan.emitters.len(), view, &mut stats);
         Ok((rows, stats))
     }
 
@@ -125,33 +137,6 @@ impl Mc {
                 )),
             };
             self.lit.push((key, image));
-        }
-    }
-
-    fn count(&self, rows: &[Row], samples: usize, emitters: usize, view: &View, stats: &mut Stats) {
-        let spp = (samples * REPLICATES) as u64;
-        let jobs = rows.iter().map(|r| r.jobs).sum::<u64>();
-        let penumbra = rows.iter().map(|r| r.penumbra).sum::<u64>();
-        let pixels = (view.size[0] * view.size[1]) as u64;
-        for (name, count) in [
-            ("spp", spp),
-            ("replicates", REPLICATES as u64),
-            ("pixels", pixels),
-            ("pixels_in_penumbra", penumbra),
-            ("samples", jobs * spp),
-            ("samples_skipped", (pixels * emitters as u64).saturating_sub(jobs) * spp),
-        ] {
-            stats.counts.insert(name.into(), count);
-        }
-        let full = rows.iter().map(|r| r.brightest).fold(0.0, f64::max);
-        if full > 0.0 {
-            let sum = rows.iter().map(|r| r.error_sum).sum::<f64>();
-            let square = rows.iter().map(|r| r.error_square).sum::<f64>();
-            let max = rows.iter().map(|r| r.error_max).fold(0.0, f64::max);
-            let n = penumbra.max(1) as f64;
-            stats.values.insert("se_mean".into(), sum / n / full);
-            stats.values.insert("se_rms".into(), (square / n).sqrt() / full);
-            stats.values.insert("se_max".into(), max / full);
         }
     }
 }
@@ -199,8 +184,39 @@ impl Renderer for Mc {
     }
 
     fn adapter(&self) -> String {
+        if let Some(sampler) = &self.gpu {
+            return sampler.gpu.adapter();
+        }
         let width = native::vector_width();
         format!("native {} threads {width}", rayon::current_num_threads())
+    }
+}
+
+/// Counters and the standard error's summary.
+fn count(rows: &[Row], samples: usize, emitters: usize, view: &View, stats: &mut Stats) {
+    let spp = (samples * REPLICATES) as u64;
+    let jobs = rows.iter().map(|r| r.jobs).sum::<u64>();
+    let penumbra = rows.iter().map(|r| r.penumbra).sum::<u64>();
+    let pixels = (view.size[0] * view.size[1]) as u64;
+    for (name, count) in [
+        ("spp", spp),
+        ("replicates", REPLICATES as u64),
+        ("pixels", pixels),
+        ("pixels_in_penumbra", penumbra),
+        ("samples", jobs * spp),
+        ("samples_skipped", (pixels * emitters as u64).saturating_sub(jobs) * spp),
+    ] {
+        stats.counts.insert(name.into(), count);
+    }
+    let full = rows.iter().map(|r| r.brightest).fold(0.0, f64::max);
+    if full > 0.0 {
+        let sum = rows.iter().map(|r| r.error_sum).sum::<f64>();
+        let square = rows.iter().map(|r| r.error_square).sum::<f64>();
+        let max = rows.iter().map(|r| r.error_max).fold(0.0, f64::max);
+        let n = penumbra.max(1) as f64;
+        stats.values.insert("se_mean".into(), sum / n / full);
+        stats.values.insert("se_rms".into(), (square / n).sqrt() / full);
+        stats.values.insert("se_max".into(), max / full);
     }
 }
 

@@ -169,3 +169,44 @@ fn refuses_what_it_cannot_draw() {
     }
     assert!(renderer(&Knobs { spp: 0, seed: 0 }, Backend::Cpu).is_err());
 }
+
+fn on_gpu(theatre: &Theatre, view: &View, wgsl: &str) -> Frame {
+    let gpu = crate::gpu::choose(Backend::Gpu).expect("the tests need a Vulkan adapter").unwrap();
+    let sampler = gpu::Sampler::new(gpu, wgsl).unwrap();
+    Mc::new(Knobs { spp: 256, seed: 3 }, Some(sampler)).radiance(theatre, view).unwrap()
+}
+
+/// Largest difference of any channel of radiance in units of the brightest unshadowed pixel of `a`'s red.
+fn distance(a: &Frame, b: &Frame) -> f32 {
+    let full = a.radiance.iter().flatten().fold(0f32, |m, v| m.max(*v));
+    let pairs = a.radiance.iter().flatten().zip(b.radiance.iter().flatten());
+    pairs.map(|(a, b)| (a - b).abs() / full).fold(0.0, f32::max)
+}
+
+/// The GPU draws the very same points, so it differs from the CPU by f32 rounding alone: at worst one of 256 samples
+/// falls on the other side of a texel's edge. A shader whose weights are 2 % off must be told apart.
+#[test]
+fn gpu_agrees_with_cpu() {
+    let mut several = theatre(edge(3), Ambient::Paper { k_d_m: 1.0, s: [0.3, 0.2, 0.1] });
+    let mut second = several.planes[0].clone();
+    second.centre_m = DVec3::new(0.1, 0.1, -0.7);
+    second.mask = Arc::new(edge(1));
+    several.planes.push(second);
+    for (theatre, pixel) in [(theatre(edge(1), Ambient::None), Pixel::Centre), (several, Pixel::Area)] {
+        let view = view(pixel);
+        let cpu = draw(&theatre, &view, 256, 3);
+        let gpu = on_gpu(&theatre, &view, gpu::WGSL);
+        assert!(distance(&cpu, &gpu) < 5e-4, "{}", distance(&cpu, &gpu));
+        for layer in &cpu.layers {
+            let other = self::layer(&gpu, &layer.name);
+            let worst = layer.values.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(worst < 5e-3, "{}: {worst}", layer.name);
+        }
+        assert_ne!(
+            cpu.radiance, gpu.radiance,
+            "the GPU's sums are f32, the CPU's f64: equal bits were not drawn twice"
+        );
+        let wrong = gpu::WGSL.replace("(1.0 / (w * w))", "(0.98 / (w * w))");
+        assert!(distance(&cpu, &on_gpu(&theatre, &view, &wrong)) > 5e-3);
+    }
+}

@@ -1,0 +1,166 @@
+// The sampler of native.rs: one invocation is one replicate of one job, a job is one pixel's and one emitter's estimate.
+
+struct Params {
+    width: u32,
+    height: u32,
+    // Points per replicate.
+    samples: u32,
+    jobs: u32,
+    planes: u32,
+    seed: u32,
+    // 1 where points also spread over the pixel.
+    area: u32,
+    // 1 or 3.
+    channels: u32,
+}
+
+struct Job {
+    x: u32,
+    y: u32,
+    emitter: u32,
+    // Planes first..end.
+    first: u32,
+    end: u32,
+    v0_r: f32,
+    v0_g: f32,
+    v0_b: f32,
+}
+
+// Texel = anchor + floor(offset + emitter * u + pixel * v), clamped to the clear border.
+struct Axis {
+    offset: f32,
+    low: f32,
+    high: f32,
+    anchor: i32,
+}
+
+struct Emitter {
+    side_x: f32,
+    side_y: f32,
+    pixel_x: f32,
+    pixel_y: f32,
+}
+
+// The texels that one plane shows of one emitter (planes of an emitter follow each other).
+struct Map {
+    emitter_x: f32,
+    emitter_y: f32,
+    pixel_x: f32,
+    pixel_y: f32,
+    // First layer of the plane's mask, and how many it has.
+    layer: u32,
+    channels: u32,
+}
+
+const REPLICATES = 16u;
+// Sums of this many terms are added to sums of sums, so that rounding stays small however many points there are.
+const FLUSH = 32u;
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> jobs: array<Job>;
+// Four tables of `samples * REPLICATES` words.
+@group(0) @binding(2) var<storage, read> points: array<u32>;
+@group(0) @binding(3) var<storage, read> emitters: array<Emitter>;
+@group(0) @binding(4) var<storage, read> maps: array<Map>;
+// For each map its columns, then its rows.
+@group(0) @binding(5) var<storage, read> axes: array<Axis>;
+// For each emitter: tangents of the columns, then of the rows.
+@group(0) @binding(6) var<storage, read> tangents: array<f32>;
+@group(0) @binding(7) var masks: texture_2d_array<u32>;
+@group(0) @binding(8) var<storage, read_write> sums: array<f32>;
+
+fn hash(word: u32) -> u32 {
+    var x = word;
+    x ^= x >> 16u;
+    x *= 0x7feb352du;
+    x ^= x >> 15u;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+fn shift(key: u32, dimension: u32, replicate: u32) -> u32 {
+    return hash(key + (dimension * REPLICATES + replicate) * 0x9e3779b9u);
+}
+
+fn unit(word: u32) -> f32 {
+    return f32(bitcast<i32>(word) >> 8u) * (1.0 / 16777216.0);
+}
+
+fn texel(axis: Axis, emitter: f32, pixel: f32, u: f32, v: f32) -> i32 {
+    let t = axis.offset + emitter * u + pixel * v;
+    return i32(floor(clamp(t, axis.low, axis.high))) + axis.anchor;
+}
+
+@compute @workgroup_size(64)
+fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let thread = id.y * groups.x * 64u + id.x;
+    let index = thread / REPLICATES;
+    let replicate = thread % REPLICATES;
+    if index >= params.jobs {
+        return;
+    }
+    let job = jobs[index];
+    let v0 = vec3<f32>(job.v0_r, job.v0_g, job.v0_b);
+    let emitter = emitters[job.emitter];
+    let key = hash(hash(params.seed ^ hash(job.y * params.width + job.x)) + job.emitter);
+    let shifts = vec4<u32>(
+        shift(key, 0u, replicate),
+        shift(key, 1u, replicate),
+        shift(key, 2u, replicate),
+        shift(key, 3u, replicate),
+    );
+    let lines = params.width + params.height;
+    let tangent = vec2<f32>(
+        tangents[job.emitter * lines + job.x],
+        tangents[job.emitter * lines + params.width + job.y],
+    );
+    let table = params.samples * REPLICATES;
+    let coloured = params.channels == 3u;
+    var total = vec3<f32>(0.0);
+    var part = vec3<f32>(0.0);
+    for (var s = 0u; s < params.samples; s++) {
+        let at = s * REPLICATES + replicate;
+        let ux = unit(points[at] ^ shifts.x);
+        let uy = unit(points[table + at] ^ shifts.y);
+        var vx = 0.0;
+        var vy = 0.0;
+        if params.area == 1u {
+            vx = unit(points[2u * table + at] ^ shifts.z);
+            vy = unit(points[3u * table + at] ^ shifts.w);
+        }
+        var seen = vec3<f32>(1.0);
+        for (var p = job.first; p < job.end; p++) {
+            let m = job.emitter * params.planes + p;
+            let map = maps[m];
+            let x = texel(axes[m * lines + job.x], map.emitter_x, map.pixel_x, ux, vx);
+            let y = texel(axes[m * lines + params.width + job.y], map.emitter_y, map.pixel_y, uy, vy);
+            let at = vec2<i32>(x, y);
+            let first = f32(textureLoad(masks, at, map.layer, 0).x);
+            if coloured {
+                let green = select(0u, 1u, map.channels == 3u);
+                seen *= vec3<f32>(
+                    first,
+                    f32(textureLoad(masks, at, map.layer + green, 0).x),
+                    f32(textureLoad(masks, at, map.layer + 2u * green, 0).x),
+                );
+            } else {
+                seen.x *= first;
+            }
+        }
+        let x = tangent.x - emitter.side_x * ux + emitter.pixel_x * vx;
+        let y = tangent.y - emitter.side_y * uy + emitter.pixel_y * vy;
+        let w = 1.0 + (x * x + y * y);
+        part += (seen - v0) * (1.0 / (w * w));
+        if (s & (FLUSH - 1u)) == FLUSH - 1u {
+            total += part;
+            part = vec3<f32>(0.0);
+        }
+    }
+    total += part;
+    let out = index * params.channels * REPLICATES + replicate;
+    sums[out] = total.x;
+    if coloured {
+        sums[out + REPLICATES] = total.y;
+        sums[out + 2u * REPLICATES] = total.z;
+    }
+}
