@@ -83,8 +83,8 @@ def headdress():
     spine = head(along(claw_line))
     for i, (p, a, s) in enumerate(spine.walk(33, 60, 200)):
         claw.fit(ukel(), p.real, p.imag, a + 20, 18.5, flip=i % 2 == 0, least=0.5)
-    for side in (-1, 1):
-        claw.row(spine, 15.5, drop(0.55), 6.8, 180 if side > 0 else 0, side * 29, 40, 320)
+    for side, start, end in ((-1, 60, 330), (1, 60, 330)):
+        claw.row(spine, 15.5, drop(0.55), 6.8, 180 if side > 0 else 0, side * 27.5, start, end, least=0.55)
     claw.row(spine, 14, drop(), 6.5, 180, 0, 580, 16, taper=lambda s: 1.9 - 1.3 * s)
     bird.row(head(along([(186, 30), (222, -20), (232, -62), (222, -104)])), 19, comma(), 11)
     bird.row(head(along([(222, 44), (262, 50), (286, 84), (290, 112)])), 16, drop(0.6), 7.5, 180)
@@ -95,23 +95,13 @@ def headdress():
     bird.row(head(along([(120, 56), (160, 74), (180, 96)])), 15, drop(0.55), 6.5, 180)
     bird.row(head(along([(96, 78), (140, 104), (152, 126)])), 13, dot(), 3.4)
 
-    # tongues of flame along the claw's outer edge, and leaves over the brow
+    # tongues of flame along the claw's outer edge
     flames = []
     edge = head(ribbon_edge(claw_line, widths))
     for p, a, s in edge.walk(34, 230, 170):
         size = 31 * (1.2 - 0.6 * s)
         flames.append(plain(through([(-0.9, -0.12), (-0.3, 0.4), (0.5, 0.72), (1.2, 0.64, 0), (0.75, 0.26), (0.7, -0.12)]).at(p.real, p.imag, a, size)))
-    for x, y, a, size in ((-46, -80, -150, 17), (-24, -100, -128, 24), (8, -116, -108, 21)):
-        leaf = Leather(head(petal(0.5).at(x, y, a, size)), web=3)
-        leaf.clear_of(face, cap)
-        leaf.fit(drop(0.5), *_xy(head(dot().at(x, y, 0, 1))), HEAD["turn"] + a, size * 0.55)
-        flames.append(leaf)
     return flames + pieces
-
-
-def _xy(curve):
-    c = sum(curve.points(2)) / len(curve.points(2))
-    return c.real, c.imag
 
 
 def ribbon_edge(points, widths):
@@ -137,10 +127,10 @@ def trunk():
         (434, 404), (440, 446), (418, 484), (352, 508), (292, 528), (260, 566), (268, 614), (308, 642),
         (352, 684), (386, 750), (396, 816, 0), (484, 818, 0),
         (494, 752), (532, 684), (588, 630), (644, 592), (684, 546), (682, 494), (642, 462), (586, 464), (532, 478), (504, 462), (496, 430), (500, 380)]), web=4.5)
-    belt = Leather(through([(384, 798), (440, 808), (492, 796), (514, 816), (514, 846), (438, 864), (362, 850), (364, 818)]), web=3.6)
+    belt = Leather(through([(384, 798), (440, 808), (492, 796), (514, 816), (514, 852), (438, 871), (362, 856), (364, 818)]), web=3.6)
     cloth = Leather(through([
-        (366, 836, 0), (330, 890), (304, 962), (308, 1052), (326, 1128, 0), (400, 1146), (480, 1140), (560, 1150), (640, 1186), (768, 1268, 0),
-        (768, 1180), (760, 1090), (726, 990), (666, 912), (590, 862), (502, 834, 0), (438, 850)]), web=4.6)
+        (364, 848, 0), (330, 896), (304, 962), (308, 1052), (326, 1128, 0), (400, 1146), (480, 1140), (560, 1150), (640, 1186), (768, 1268, 0),
+        (768, 1180), (760, 1090), (726, 990), (666, 912), (590, 866), (504, 842, 0), (438, 860)]), web=4.6)
     for p, others in ((torso, [belt]), (belt, [torso, cloth]), (cloth, [belt])):
         p.clear_of(*others)
 
@@ -156,8 +146,8 @@ def trunk():
     torso.row(along([(664, 572), (672, 530), (650, 486), (590, 482), (548, 494)]), 14, drop(0.6), 5.5, 90)
     torso.row(along([(278, 594), (276, 562), (304, 540), (352, 524), (384, 512)]), 14, drop(0.6), 5.5, 90)
 
-    belt.row(along([(364, 836), (438, 848), (508, 834)]), 13, dot(), 2.8)
-    belt.row(along([(370, 821), (438, 832), (504, 819)]), 22, lozenge(0.55), 9)
+    belt.row(along([(364, 838), (438, 851), (510, 836)]), 12, dot(), 3.0, least=0.5)
+    belt.row(along([(368, 819), (438, 830), (506, 817)]), 22, lozenge(0.55), 8.5, least=0.5)
 
     hem = along([(328, 1114), (400, 1131), (480, 1125), (560, 1135), (640, 1169), (752, 1244)])
     back = along([(752, 1236), (752, 1180), (744, 1092), (710, 998), (654, 924), (586, 876), (508, 850)])

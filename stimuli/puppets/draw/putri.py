@@ -6,6 +6,8 @@ Run `python putri.py` (numpy, scipy, shapely) to write ../putri.svg and print th
 import math
 from pathlib import Path
 
+from shapely.geometry import Point
+
 from leather import Leather, comma, dot, drop, line, lozenge, petal, plain, ribbon, sickle, through, ukel, write
 
 SIZE = (1000, 1600)
@@ -59,10 +61,10 @@ def head():
     at = dict(x=505, y=318, turn=6, scale=1.12)
     h = lambda c: c.at(**at)
     face = plain(h(through([(18, -86, 0), (60, -80), (82, -54), (84, -26, 0), (110, 2, 0), (94, 9, 0), (100, 20, 0), (91, 26, 0), (97, 34), (87, 43, 0), (88, 56), (66, 74), (30, 72),
-                            (17, 88), (22, 104, 0), (-30, 104, 0), (-24, 60), (-24, -20), (-8, -70)])), SKIN, 0.72, RIM)
+                            (17, 84), (21, 106, 0), (-30, 106, 0), (-24, 60), (-24, -20), (-8, -70)])), SKIN, 0.72, RIM)
     lines = [line(h(along([(36, -44), (58, -56), (80, -46)])), 5), line(h(along([(40, -26), (62, -32), (84, -22)])), 6.5), line(h(along([(46, -22), (62, -20), (78, -22)])), 3),
              plain(h(through([(78, 22, 0), (88, 19), (99, 21, 0), (92, 26, 0), (96, 33), (86, 33)])), RED, 0.95), line(h(along([(96, 7), (86, 8), (84, 1)])), 3)]
-    hair = Leather(h(through([(58, -84, 0), (44, -64), (26, -40), (24, 0), (36, 34), (22, 44, 0), (6, 22), (-8, 20), (-14, 52), (-50, 74), (-92, 56), (-112, 8), (-104, -44), (-70, -72), (-10, -94), (36, -86)])),
+    hair = Leather(h(through([(58, -84, 0), (44, -64), (26, -40), (24, 0), (36, 34), (22, 44, 0), (6, 22), (-8, 20), (-14, 52), (-50, 74), (-92, 56), (-112, 8), (-106, -42), (-69, -72), (-9, -94), (38, -87)])),
                    web=4, fill=DARK)
     for r, n in ((44, 9), (66, 12)):
         for i in range(n):
@@ -75,11 +77,12 @@ def head():
     for i, a in enumerate((-168, -146, -124, -102, -80, -58)):                   # the fan, back to front
         r = 78 + 26 * math.sin(math.radians(180 * (i + 1) / 7.5))
         x, y = polar(-14, -72, r, a)
-        leaf = hide(h(through([(-0.9, 0.3), (-0.3, 0.6), (0.5, 0.52), (1.1, 0, 0), (0.5, -0.52), (-0.3, -0.6), (-0.9, -0.3)]).at(x, y, a, 42)), (AMBER, GREEN)[i % 2])
+        leaf = hide(h(through([(-0.7, 0.42), (-0.2, 0.6), (0.5, 0.52), (1.1, 0, 0), (0.5, -0.52), (-0.2, -0.6), (-0.7, -0.42)]).at(x, y, a, 42)), (AMBER, GREEN)[i % 2])
         leaf.fit(drop(0.55), *xy(h, *polar(-14, -72, r + 10, a)), at["turn"] + a, 17)
         crown += [leaf, hide(h(dot().at(*polar(-14, -72, r + 55, a), 0, 11)), RED)]
-    band = hide(h(ribbon([(-112, -44), (-74, -92), (-12, -116), (40, -104), (72, -82)], [30, 44, 50, 44, 26], n=13)), AMBER, web=4.5)
-    mid = h(along([(-104, -52), (-74, -92), (-12, -116), (40, -104), (64, -90)]))
+    band = hide(h(ribbon([(-116, -44), (-78, -94), (-12, -119), (42, -107), (76, -82)], [30, 46, 52, 46, 26], n=13)), AMBER, web=4.5)
+    band.clear_of(hair, *(c for c in crown if isinstance(c, Leather)), margin=0)
+    mid = h(along([(-106, -56), (-77, -94), (-12, -119), (42, -107), (66, -92)]))
     for i, (p, a, s) in enumerate(mid.walk(31, 8, 8)):
         band.fit(ukel(), p.real, p.imag, a + 90, 17, flip=i % 2 == 0, least=0.5)
     phoenix = [hide(h(ribbon([(60, -92), (92, -112), (112, -146), (102, -176), (84, -170)], [22, 24, 20, 14, 3], n=11)), RED),
@@ -103,8 +106,8 @@ def rosette(leather, x, y, inner, outer, petals, fat=0.5):
 def robe():
     """Skirt with its apron and hem, bodice with the cloud collar, girdle, and two streamers behind."""
     out = []
-    for pts, fill, flip in (([(440, 720), (366, 770), (312, 870), (272, 980), (206, 1070), (128, 1100), (100, 1066), (122, 1040)], GREEN, False),
-                            ([(452, 730), (400, 820), (358, 930), (310, 1050), (236, 1142), (160, 1180), (116, 1156), (130, 1126)], AMBER, True)):
+    for pts, fill, flip in (([(424, 716), (334, 762), (266, 860), (230, 970), (170, 1056), (104, 1084), (74, 1050), (96, 1026)], GREEN, False),
+                            ([(424, 732), (354, 826), (308, 930), (270, 1040), (208, 1130), (144, 1160), (104, 1136), (120, 1108)], AMBER, True)):
         s = hide(ribbon(pts, [30, 46, 52, 50, 46, 36, 20, 4], n=19), fill, web=5)
         for i, (p, a, t) in enumerate(along(pts).walk(35, 60, 70)):
             s.fit(ukel(), p.real, p.imag, a, 17, flip=(i % 2 == 0) != flip, least=0.6)
@@ -135,12 +138,12 @@ def robe():
         skirt.fit(petal(0.45), x, y, a, 16)
     folds = [line(along([(424, 760), (398, 920), (352, 1070), (286, 1190)]), 4), line(along([(560, 770), (608, 940), (640, 1080), (648, 1190)]), 4)]
 
-    bodice = hide(through([(470, 402, 0), (426, 428), (392, 452), (398, 520), (420, 610), (428, 716, 0), (556, 716, 0), (566, 610), (584, 530), (598, 456), (566, 430), (528, 402, 0)]), RED)
+    bodice = hide(through([(470, 426, 0), (426, 436), (392, 454), (398, 520), (420, 610), (428, 716, 0), (556, 716, 0), (566, 610), (584, 530), (598, 458), (566, 436), (526, 426, 0)]), RED)
     collar = []
-    for a, r in ((168, 86), (128, 92), (90, 100), (52, 92), (12, 86)):            # the cloud collar, lobe by lobe
-        x, y = polar(498, 424, r * 0.62, a)
+    for a, r in ((152, 84), (121, 92), (90, 98), (59, 92), (28, 84)):            # the cloud collar, lobe by lobe
+        x, y = polar(497, 436, r * 0.62, a)
         lobe = hide(through([(-0.8, 0.35), (-0.1, 0.6), (0.4, 0.78), (0.8, 0.5), (0.72, 0.22), (1.06, 0, 0), (0.72, -0.22), (0.8, -0.5), (0.4, -0.78), (-0.1, -0.6), (-0.8, -0.35)]).at(x, y, a, r * 0.52), AMBER)
-        qx, qy = polar(498, 424, r * 0.78, a)
+        qx, qy = polar(497, 436, r * 0.78, a)
         lobe.fit(drop(0.5), qx, qy, a, 14)
         for s in (-1, 1):
             lobe.fit(comma(), *polar(qx, qy, 21, a + 100 * s), a, 11, flip=s > 0, least=0.5)
@@ -148,12 +151,14 @@ def robe():
     for lobe in collar:
         bodice.clear_of(lobe)
         bodice.holes += lobe.holes
-    neck = hide(ribbon([(464, 428), (498, 440), (534, 424)], [30, 30, 30], n=7), GREEN, web=4)
-    neck.row(along([(464, 428), (498, 440), (534, 424)]), 16, dot(), 4.5)
+    neck = hide(ribbon([(456, 430), (497, 446), (538, 430)], [30, 34, 30], n=7), GREEN, web=4)
+    neck.row(along([(456, 430), (497, 446), (538, 430)]), 16, drop(0.6), 6.5, 90)
     for y in (566, 634):
         blossom(bodice, 494, y, 30)
     for x, y in ((446, 556), (542, 556), (446, 604), (544, 604), (450, 652), (540, 652)):
         bodice.fit(ukel(), x, y, 90, 19, flip=x < 490, least=0.5)
+    for p in ((594, 476), (398, 476)):
+        pierce(*p, bodice, *(c for c in collar if c.area.contains(Point(p))))
     girdle = hide(through([(420, 682), (492, 692), (566, 680), (572, 722), (492, 738), (414, 724)]), AMBER, web=4.5)
     girdle.row(along([(424, 703), (492, 715), (564, 701)]), 27, lozenge(0.75), 11)
     knot = flower(494, 712, 34, 6, GREEN, RED)
@@ -167,8 +172,16 @@ def robe():
 
 
 def button(x, y, r):
-    """The dark patch under a joint: dark on dark hides the overlap."""
-    return plain(dot().at(x, y, 0, r), DARK, 1)
+    """The dark patch on both sides of a joint: dark on dark hides the overlap, and the rivet's hole shows at every pose."""
+    b = Leather(dot().at(x, y, 0, r), web=4, fill=DARK, opacity=1)
+    b.cut(dot().at(x, y, 0, 6))
+    return b
+
+
+def pierce(x, y, *pieces):
+    """Opens hides for a rivet."""
+    for p in pieces:
+        p.holes.append(dot().at(x, y, 0, 6))
 
 
 def hand(x, y, turn, flip=False):
@@ -188,9 +201,6 @@ def sleeve(shoulder, elbow, wrist, droop, flip):
     mid = ((sx + ex) / 2, (sy + ey) / 2)
     a = math.degrees(math.atan2(ey - sy, ex - sx))
     upper = hide(ribbon([shoulder, mid, elbow], [40, 74, 46], n=9), RED)
-    cap = hide(through([(-0.9, 0.9), (-0.1, 1.02), (0.7, 0.86), (1.1, 0.3), (1.16, 0), (1.1, -0.3), (0.7, -0.86), (-0.1, -1.02), (-0.9, -0.9), (-1.05, 0)]).at(sx, sy, a, 27), AMBER)
-    for s in (-1, 0, 1):
-        cap.fit(drop(0.5), *polar(sx, sy, 20, a + 60 * s), a + 60 * s, 6)
     for t in (0.42, 0.62):
         blossom(upper, sx + (ex - sx) * t, sy + (ey - sy) * t, 24)
     b = math.degrees(math.atan2(wy - ey, wx - ex))
@@ -206,18 +216,20 @@ def sleeve(shoulder, elbow, wrist, droop, flip):
     cx, cy = (ex + wx + dx) / 3, (ey + wy + dy) / 3
     for t, r in ((-0.1, 34), (0.5, 25)):
         blossom(lower, cx + (ex - cx) * t, cy + (ey - cy) * t, r)
-    return upper, cap, lower, cuff
+    pierce(sx, sy, upper)
+    pierce(ex, ey, upper, lower)
+    return upper, lower, cuff
 
 
 def arms():
     fs, fe, fw = (594, 476), (676, 622), (808, 560)
     bs, be, bw = (398, 476), (296, 592), (196, 664)
-    fu, fcap, fl, fcuff = sleeve(fs, fe, fw, (792, 748), False)
-    bu, bcap, bl, bcuff = sleeve(bs, be, bw, (276, 790), True)
+    fu, fl, fcuff = sleeve(fs, fe, fw, (792, 748), False)
+    bu, bl, bcuff = sleeve(bs, be, bw, (276, 790), True)
     stem = [line(along([(858, 548), (872, 480), (866, 420)]), 6), *flower(866, 384, 56, 8, RED, AMBER, -90),
             hide(petal(0.4).at(896, 478, -30, 30), GREEN), hide(petal(0.4).at(848, 492, -150, 26), GREEN)]
-    front = ([fu, fcap, button(*fs, 15), button(*fe, 17)], [*hand(830, 552, -12), *stem, fl, fcuff, button(*fe, 17)])
-    back = ([bu, bcap, button(*bs, 15), button(*be, 17)], [*hand(178, 682, 128), bl, bcuff, button(*be, 17)])
+    front = ([fu, button(*fs, 21), button(*fe, 24)], [*hand(830, 552, -12), *stem, fl, fcuff, button(*fe, 24)])
+    back = ([bu, button(*bs, 21), button(*be, 24)], [*hand(178, 682, 128), bl, bcuff, button(*be, 24)])
     rods = ([plain(ribbon([(836, 556), (846, 1000), (850, 1400), (848, 1500), (850, 1594)], ROD, n=21, tail=False))], [plain(ribbon([(172, 690), (166, 1150), (170, 1400), (168, 1500), (166, 1594)], ROD, n=21, tail=False))])
     return front, back, rods, (fs, fe, (836, 556), bs, be, (172, 690))
 
@@ -225,7 +237,7 @@ def arms():
 def draw():
     (fu, fl), (bu, bl), (fr, br), pivots = arms()
     main_rod = plain(ribbon([(494, 730), (498, 900), (500, 1290), (498, 1420), (500, 1500), (498, 1598)], [5, 5, 6, 7, 7, 8, 9, 13, 24, 26, 4], n=21))
-    parts = [("rod_back", br), ("arm_back_lower", bl), ("arm_back_upper", bu), ("body", [*robe(), main_rod, button(594, 476, 15), button(398, 476, 15)]), ("head", head()),
+    parts = [("rod_back", br), ("arm_back_lower", bl), ("arm_back_upper", bu), ("body", [*robe(), main_rod, button(594, 476, 21), button(398, 476, 21)]), ("head", head()),
              ("rod_front", fr), ("arm_front_lower", fl), ("arm_front_upper", fu)]
     n = write(Path(__file__).parent.parent / "putri.svg", SIZE, parts, "Putri", DARK)
     print(n, pivots)
