@@ -48,9 +48,9 @@ def draw():
     wings(k)
 
     free = k.free.intersection(right)
-    inside = free.intersection(through([(598, 90, 0), (630, 190), (694, 324), (768, 456), (828, 582), (852, 682), (838, 742), (790, 790), (748, 852), (728, 930), (728, 964), (598, 984, 0)]).polygon(12).buffer(-1))
+    inside = free.intersection(through([(598, 90, 0), (630, 190), (694, 324), (768, 456), (828, 582), (852, 682), (838, 742), (812, 806), (768, 858), (742, 900), (732, 944), (738, 966), (598, 984, 0)]).polygon(12).buffer(-1))
     flow = lambda x, y: -90 + 55 * math.tanh((x - AXIS) / 130) + 20 * math.sin(y / 47)
-    k.pack(inside, 24, 3.4, flow, gap=4.4, cell=1.5, spiral=15, small=8, hand=lambda x, y: int(y // 53) % 2 == 0)
+    k.pack(inside, 24, 3.2, flow, gap=4.7, cell=1.5, spiral=15, small=7, hand=lambda x, y: int(y // 53) % 2 == 0)
 
     k.holes += [mirror(h) for h in k.holes]
     k.free = whole
