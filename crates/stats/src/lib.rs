@@ -9,6 +9,7 @@
 //! | [`clustered`] | choices of participants × pairs: intraclass correlation, bootstrap, robust and mixed logit |
 //! | [`pairwise`] | Bradley–Terry and Thurstone scaling in JOD, circular triads, odd observers |
 //! | [`random`] | the seeded generator behind every resampling |
+//! | [`numerics`] | how exact all of this is, measured |
 //!
 //! Invalid input is an `Err` ([`StatsError`]) that names the field, the value and the rule. NaN is always invalid
 //! input: no function takes or returns one in silence. What is a *finding* is a value.
@@ -22,6 +23,7 @@ mod error;
 pub mod inference;
 mod linalg;
 mod normal;
+pub mod numerics;
 mod optimise;
 pub mod pairwise;
 pub mod random;

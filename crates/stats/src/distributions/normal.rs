@@ -146,7 +146,8 @@ fn positive_inverse(q: f64, share: f64) -> f64 {
         let target = q.ln();
         let f = |x: f64| {
             let (upper, ln_upper) = upper_and_ln(x);
-            let value = if upper > 1e-300 { ((q - upper) / upper).ln_1p() } else { target - ln_upper };
+            let value =
+                if upper >= f64::MIN_POSITIVE { ((q - upper) / upper).ln_1p() } else { target - ln_upper };
             let slope = if upper > 0.0 { density(x) / upper } else { x };
             Local { value, slope }
         };

@@ -37,3 +37,45 @@ pub(crate) fn increasing(f: &dyn Fn(f64) -> Local, mut low: f64, mut high: f64, 
     }
     x
 }
+
+/// [`increasing`] for a function whose slope is taken from its last two values.
+pub(crate) fn increasing_secant(f: impl Fn(f64) -> f64, low: f64, high: f64, start: f64) -> f64 {
+    let last = std::cell::Cell::new((f64::NAN, f64::NAN));
+    let with_slope = |x: f64| {
+        let value = f(x);
+        let (last_x, last_value) = last.replace((x, value));
+        let mut slope = (value - last_value) / (x - last_x);
+        if slope.is_nan() {
+            let near = x + 1e-3 * x.abs().max(1e-3);
+            slope = (f(near) - value) / (near - x);
+        }
+        Local { value, slope }
+    };
+    increasing(&with_slope, low, high, start)
+}
+
+/// The positive root up to `high` of an increasing function, sought in ln x so that the smallest is as exact as the
+/// largest; 0 when it lies below 1e-323.
+pub(crate) fn in_logarithm(f: impl Fn(f64) -> f64, high: f64, start: f64) -> f64 {
+    let in_ln = |v: f64| f(v.exp().min(high));
+    let (low, ln_high) = (-744.0, high.ln());
+    if in_ln(low) >= 0.0 {
+        return 0.0;
+    }
+    if in_ln(ln_high) <= 0.0 {
+        return high;
+    }
+    let v = increasing_secant(in_ln, low, ln_high, start.ln());
+    // The logarithm holds fewer digits than x: one step on x itself puts them back.
+    let x = v.exp().min(high);
+    let near = x * 0.9999;
+    let slope = (f(x) - f(near)) / (x / near).ln();
+    let correction = f(x) / slope;
+    if correction.abs() < 1e-6 { (x * (1.0 - correction)).min(high) } else { x }
+}
+
+/// ln(p / target), without cancellation where they are close and also where p underflows.
+pub(crate) fn ln_ratio(p: f64, ln_p: f64, target: f64) -> f64 {
+    let relative = (p - target) / target;
+    if p >= f64::MIN_POSITIVE && relative.abs() < 0.5 { relative.ln_1p() } else { ln_p - target.ln() }
+}

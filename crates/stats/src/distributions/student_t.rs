@@ -5,7 +5,7 @@
 
 use super::beta::{self, ln_density_core};
 use super::dd::Dd;
-use super::root::{self, Local};
+use super::root;
 use super::special::{LN_SQRT_2PI, stirling_error};
 use crate::{Result, StatsError};
 
@@ -99,7 +99,7 @@ impl StudentT {
         Ok(self.density(StatsError::number("t", t)?.abs()))
     }
 
-    /// The t below which a share `p` lies; −∞ and ∞ at 0 and 1 and where t overflows.
+    /// The t below which a share `p` lies; −∞ and ∞ at 0 and 1, ±1.8e308 where t would be beyond.
     ///
     /// # Errors
     /// [`StatsError::Invalid`] unless p is in [0, 1].
@@ -168,7 +168,7 @@ impl StudentT {
         // f(t) = x^a y^½ / (B(a, ½) t): the chain rule on I_x(a, ½).
         let (x, y) = shares(df, t);
         let lambda = y * a.into() - x * 0.5.into();
-        let core = ln_density_core(a, 0.5, lambda).exp();
+        let core = ln_density_core(a, 0.5, x, y, lambda).exp();
         core * (a / (a + 0.5) * 0.5 / std::f64::consts::TAU).sqrt() / t
     }
 
@@ -180,37 +180,20 @@ impl StudentT {
         if central == 0.0 {
             return 0.0;
         }
-        let (ln_low, ln_high) = (-750.0, 710.0);
-        let by_tail = q < 0.25;
-        let ln_target = if by_tail { q.ln() } else { central.ln() };
-        let f = |v: f64| {
-            let t = v.exp();
-            let point = self.point(t);
-            let flow = t * self.density(t);
-            if by_tail {
-                let value =
-                    if point.upper > 1e-300 { ratio_ln(q, point.upper) } else { ln_target - point.ln_upper };
-                Local { value, slope: flow / point.upper }
-            } else {
-                Local { value: ratio_ln(point.central, central), slope: flow / point.central }
-            }
-        };
-        let start = if by_tail { (-2.0 * q.ln()).sqrt().ln() } else { (central / self.density(0.0)).ln() };
-        let v = root::increasing(&f, ln_low, ln_high, start);
-        if v > 709.7 {
-            return f64::INFINITY;
+        if q < 0.25 {
+            let f = |t: f64| {
+                let point = self.point(t);
+                -root::ln_ratio(point.upper, point.ln_upper, q)
+            };
+            root::in_logarithm(f, f64::MAX, (-2.0 * q.ln()).sqrt())
+        } else {
+            let f = |t: f64| {
+                let point = self.point(t);
+                root::ln_ratio(point.central, point.central.ln(), central)
+            };
+            root::in_logarithm(f, f64::MAX, central / self.density(0.0))
         }
-        // The logarithm of a large t holds fewer digits than t: one step on t itself puts them back.
-        let Local { value, slope } = f(v);
-        let correction = value / slope;
-        if correction.abs() < 1e-6 { v.exp() * (1.0 - correction) } else { v.exp() }
     }
-}
-
-/// ln(a / b) without cancellation where a ≈ b.
-fn ratio_ln(a: f64, b: f64) -> f64 {
-    let relative = (a - b) / b;
-    if relative.abs() < 0.5 { relative.ln_1p() } else { a.ln() - b.ln() }
 }
 
 /// df / (df + t²) and t² / (df + t²), to 31 digits: both scaled by a power of two so that t² cannot overflow.

@@ -1,0 +1,4 @@
+//! The crate against reference values.
+
+mod distributions;
+mod nist;
