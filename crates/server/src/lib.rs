@@ -13,16 +13,17 @@ mod limiter;
 mod making;
 mod password;
 mod picture;
-mod results;
+mod render;
+pub mod results;
 mod routes;
 mod server;
 mod web;
 
 pub use error::{StartError, StudyFileError};
 pub use export::{CODEBOOK, codebook_csv, responses_csv};
-pub use library::Library;
+pub use library::{Library, check_study};
 pub use making::{Made, Maker, Making, Task};
-pub use results::{Results, results};
+pub use render::RenderMaker;
 pub use server::{Handle, Server, ServerConfig};
 
 /// Re-exported for callers that read a data folder without a server.

@@ -1,9 +1,11 @@
 //! Where study files, scenes and pictures are read from: the data folder first, then what is built in.
 
 use crate::error::StudyFileError;
-use kelir_study::StudyDefinition;
+use crate::render;
+use kelir_scene::{Assets, Scene};
+use kelir_study::{Condition, Kind, Problem, StudyDefinition, StudyErrors};
 use rust_embed::RustEmbed;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -40,7 +42,9 @@ impl Library {
                 let message = "the path leads out of the study's folders";
                 return Err(io::Error::new(ErrorKind::PermissionDenied, message));
             }
-            return std::fs::read(file);
+            if std::fs::metadata(&file)?.is_file() {
+                return std::fs::read(file);
+            }
         }
         match BuiltIn::get(&path) {
             Some(file) => Ok(file.data.into_owned()),
@@ -63,7 +67,7 @@ impl Library {
             .collect()
     }
 
-    /// Reads and checks the study file at `path`.
+    /// Reads and checks the study file at `path`, with its scenes, its conditions' settings and its pictures.
     ///
     /// # Errors
     /// It cannot be read, or everything that is wrong with it.
@@ -72,12 +76,110 @@ impl Library {
         let bytes = self.read(path).map_err(unreadable)?;
         let text = String::from_utf8(bytes)
             .map_err(|_| unreadable(io::Error::new(ErrorKind::InvalidData, "the file is no UTF-8 text")))?;
-        Ok(StudyDefinition::parse(path, &text)?)
+        let study = StudyDefinition::parse(path, &text)?;
+        let problems = self.problems_around(path, &study);
+        if problems.is_empty() { Ok(study) } else { Err(StudyErrors(problems).into()) }
     }
 
-    /// The library path of something that a study file names relative to itself.
-    pub fn beside_study(path: &str) -> String {
-        format!("studies/{path}")
+    /// What is wrong with what a study names.
+    fn problems_around(&self, file: &str, study: &StudyDefinition) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        let mut problem = |field: String, value: Option<&str>, rule: String| {
+            let value = value.map(|v| format!("{v:?}"));
+            problems.push(Problem { file: file.to_owned(), field, value, rule });
+        };
+        for (name, condition) in &study.conditions {
+            let field = format!("conditions.{name}");
+            match condition {
+                Condition::Rendered { technique, knobs, camera } => {
+                    if let Err(rule) = render::technique(technique, knobs) {
+                        problem(field.clone(), None, rule);
+                    }
+                    if let Some(Err(rule)) = camera.as_ref().map(render::camera) {
+                        problem(format!("{field}.camera"), None, rule);
+                    }
+                }
+                Condition::Files { files } => {
+                    for (pair, path) in files {
+                        if let Err(error) = self.read(&beside(file, path)) {
+                            problem(format!("{field}.files.{pair}"), Some(path), error.to_string());
+                        }
+                    }
+                }
+            }
+        }
+        let mut scenes: BTreeMap<String, Option<bool>> = BTreeMap::new();
+        let mut wrong = Vec::new();
+        for (i, block) in study.blocks.iter().enumerate() {
+            for (j, pair) in block.pairs.iter().enumerate() {
+                let Some(named) = &pair.scene else { continue };
+                let field = format!("blocks[{i}].pairs[{j}].scene");
+                let path = beside(file, named);
+                let moves = *scenes.entry(path.clone()).or_insert_with(|| match self.scene(&path) {
+                    Ok(scene) => Some(scene.timeline().is_some()),
+                    Err(found) => {
+                        wrong.extend(found);
+                        None
+                    }
+                });
+                if moves == Some(false) && block.kind == Kind::Animation {
+                    problem(field, Some(named), "has no [timeline]; the block shows animations".to_owned());
+                }
+            }
+        }
+        problems.extend(wrong);
+        problems
+    }
+
+    /// Reads and checks the scene at a path of the library.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn scene(&self, path: &str) -> Result<Scene, Vec<Problem>> {
+        let whole = |rule: String| {
+            vec![Problem { file: path.to_owned(), field: "scene".to_owned(), value: None, rule }]
+        };
+        let bytes = self.read(path).map_err(|error| whole(error.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|_| whole("is no UTF-8 text".to_owned()))?;
+        let path = normalise(path).ok_or_else(|| whole("leads out of the study's folders".to_owned()))?;
+        Scene::parse(&path, &text, self).map_err(|errors| {
+            let problems = errors.problems().iter().cloned();
+            problems.map(|p| Problem { file: p.file, field: p.field, value: p.value, rule: p.rule }).collect()
+        })
+    }
+}
+
+impl Assets for Library {
+    fn read(&self, path: &str) -> io::Result<Vec<u8>> {
+        Library::read(self, path)
+    }
+}
+
+/// The library path of what a file names relative to itself.
+pub(crate) fn beside(file: &str, path: &str) -> String {
+    match file.rsplit_once('/') {
+        Some((folder, _)) => format!("{folder}/{path}"),
+        None => path.to_owned(),
+    }
+}
+
+/// Reads and checks any study file with all that it names: files are looked for below the parent of the study's folder when
+/// that is called `studies`, else below the folder itself, and then among the built-in ones.
+///
+/// # Errors
+/// It cannot be read, or everything that is wrong with it.
+pub fn check_study(file: &Path) -> Result<StudyDefinition, StudyFileError> {
+    let unreadable = |source| StudyFileError::Unreadable { path: file.to_owned(), source };
+    let whole = file.canonicalize().map_err(unreadable)?;
+    let parts = (whole.parent(), whole.file_name().and_then(|name| name.to_str()));
+    let (Some(folder), Some(name)) = parts else {
+        return Err(unreadable(io::Error::new(ErrorKind::InvalidInput, "is no file with a readable name")));
+    };
+    match folder.parent() {
+        Some(root) if folder.file_name().is_some_and(|name| name == "studies") => {
+            Library::new(root).study(&format!("studies/{name}"))
+        }
+        _ => Library::new(folder).study(name),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Making a study's stimuli: each once, stored by what it is with where it came from.
 
-use crate::library::Library;
+use crate::library::{Library, beside};
 use crate::picture;
 use kelir_store::{Render, Store, StoreError, sha256_hex};
 use kelir_study::{Block, Condition, Pair, StudyDefinition};
@@ -21,6 +21,18 @@ pub struct Task<'a> {
     pub name: &'a str,
     /// The condition.
     pub condition: &'a Condition,
+}
+
+impl Task<'_> {
+    /// The study's file in the library.
+    pub fn study_file(&self) -> String {
+        format!("studies/{}.toml", self.study.id)
+    }
+
+    /// The pair's scene in the library.
+    pub fn scene_file(&self) -> Option<String> {
+        self.pair.scene.as_ref().map(|scene| beside(&self.study_file(), scene))
+    }
 }
 
 /// A finished stimulus.
@@ -229,7 +241,7 @@ fn draw(
 fn picture_file(task: &Task<'_>, library: &Library) -> Result<(String, Vec<u8>), String> {
     let Condition::Files { files } = task.condition else { return Err("is not a picture file".to_owned()) };
     let path = files.get(&task.pair.id).ok_or("has no picture file")?;
-    let path = Library::beside_study(path);
+    let path = beside(&task.study_file(), path);
     let bytes = library.read(&path).map_err(|error| format!("{path}: {error}"))?;
     Ok((path, bytes))
 }

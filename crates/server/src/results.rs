@@ -4,11 +4,12 @@ use kelir_store::{Participants, Store, StoreError, StudyStimulus};
 use kelir_study::StudyDefinition;
 use kelir_study::analysis::{Answer, BlockSummary, summarise};
 use serde::Serialize;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Results of one version of a study.
 #[derive(Clone, Debug, Serialize)]
-pub struct Results {
+pub struct StudyResults {
     /// Study's id.
     pub study: String,
     /// Study's title.
@@ -38,7 +39,7 @@ pub struct OtherVersion {
 ///
 /// # Errors
 /// The store cannot be read.
-pub async fn results(store: &Store, study: &StudyDefinition) -> Result<Results, StoreError> {
+pub async fn results(store: &Store, study: &StudyDefinition) -> Result<StudyResults, StoreError> {
     let config_hash = study.config_hash();
     let idle = Duration::from_secs(60 * u64::from(study.idle_minutes));
     let rows = store.responses(&study.id, &config_hash).await?;
@@ -50,7 +51,7 @@ pub async fn results(store: &Store, study: &StudyDefinition) -> Result<Results, 
     });
     let other =
         store.sessions_by_version(&study.id).await?.into_iter().filter(|(hash, _)| *hash != config_hash);
-    Ok(Results {
+    Ok(StudyResults {
         study: study.id.clone(),
         title: study.title.clone(),
         participants: store.participants(&study.id, &config_hash, idle).await?,
@@ -59,4 +60,53 @@ pub async fn results(store: &Store, study: &StudyDefinition) -> Result<Results, 
         other_versions: other.map(|(config_hash, sessions)| OtherVersion { config_hash, sessions }).collect(),
         config_hash,
     })
+}
+
+/// Why there are no results.
+#[derive(Debug, thiserror::Error)]
+pub enum ResultsError {
+    /// The folder is no data folder of kelir.
+    #[error("{0}: holds no kelir.sqlite; give the folder that `kelir serve` was started with")]
+    NoData(PathBuf),
+    /// No study of this name was ever served from the folder.
+    #[error("study = {study:?}: must be one of {}", .known.join(", "))]
+    UnknownStudy {
+        /// The name asked for.
+        study: String,
+        /// The studies there are.
+        known: Vec<String>,
+    },
+    /// The data cannot be read.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// The results of a study's latest version, from a data folder; a server may be using it at the same time.
+///
+/// # Errors
+/// There is no such data folder or study, or it cannot be read.
+pub async fn of_study(data: &Path, study: &str) -> Result<StudyResults, ResultsError> {
+    let (store, study) = open_study(data, study).await?;
+    let results = results(&store, &study).await;
+    store.close().await;
+    Ok(results?)
+}
+
+/// A data folder's store, and the latest version of a study in it.
+///
+/// # Errors
+/// As [`of_study`].
+pub async fn open_study(data: &Path, study: &str) -> Result<(Store, StudyDefinition), ResultsError> {
+    if !data.join("kelir.sqlite").is_file() {
+        return Err(ResultsError::NoData(data.to_owned()));
+    }
+    let store = Store::open(data).await?;
+    match store.study_versions(study).await?.into_iter().next() {
+        Some(version) => Ok((store, version.study)),
+        None => {
+            let known = store.study_ids().await?;
+            store.close().await;
+            Err(ResultsError::UnknownStudy { study: study.to_owned(), known })
+        }
+    }
 }

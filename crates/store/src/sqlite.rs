@@ -62,6 +62,13 @@ impl Store {
         Ok(())
     }
 
+    /// The writer's `synchronous` (2 is FULL) and `foreign_keys` (1 is on).
+    pub async fn pragmas(&self) -> Result<(i64, i64), StoreError> {
+        let synchronous = sqlx::query_scalar("PRAGMA synchronous").fetch_one(&self.writer).await?;
+        let foreign_keys = sqlx::query_scalar("PRAGMA foreign_keys").fetch_one(&self.writer).await?;
+        Ok((synchronous, foreign_keys))
+    }
+
     /// Closes every connection, after what is under way.
     pub async fn close(&self) {
         self.reader.close().await;

@@ -1,0 +1,233 @@
+//! A server in a folder of its own, asked without a network.
+
+use crate::placeholder::Placeholder;
+use axum::body::{Body, to_bytes};
+use axum::http::{HeaderMap, Method, Request, StatusCode, header};
+use kelir_server::{Maker, Server, ServerConfig};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+use tempfile::TempDir;
+use tower::ServiceExt;
+
+pub const PASSWORD: &str = "wayang kulit";
+
+/// The study that the tests use: two stills and one animation, small. It hides the built-in study by having its name.
+pub const STUDY: &str = r#"
+title = "Small"
+question = "Which?"
+seed = 3
+size = [64, 36]
+estimated_minutes = 1
+[completion]
+redirect = "https://example.org/?cc=[CODE]&who=[PROLIFIC_PID]"
+[texts]
+welcome = "w"
+consent = "c"
+instructions = "i"
+debriefing = "d"
+thanks = "t"
+[conditions.pa]
+technique = "pa"
+[conditions.mc]
+technique = "mc"
+[[blocks]]
+id = "stills"
+title = "Stills"
+kind = "still"
+conditions = ["pa", "mc"]
+target = "pa"
+pairs = [{ id = "a", scene = "../scenes/near.toml" }, { id = "b", scene = "../scenes/far.toml" }]
+[[blocks]]
+id = "loop"
+title = "Loop"
+kind = "animation"
+conditions = ["pa", "mc"]
+target = "pa"
+pairs = [{ id = "c", scene = "../scenes/dance.toml" }]
+"#;
+
+const SCENE: &str = r#"
+[screen]
+width_m = 1.6
+height_m = 0.9
+albedo = 0.8
+[lamp]
+position_m = [0.0, 0.0, -1.5]
+[[lamp.emitters]]
+name = "bulb"
+shape = "rectangle"
+size_m = [0.1, 0.1]
+radiance = 40.0
+[ambient]
+model = "none"
+[[puppets]]
+image = "../puppets/square.svg"
+height_m = 0.4
+position_m = [0.0, 0.0, -0.2]
+texels = 64
+[exposure]
+white = "auto"
+"#;
+
+const TIMELINE: &str = r#"
+[timeline]
+fps = 10
+seconds = 0.4
+loop = true
+[[timeline.tracks]]
+target = "puppets[0].position_m"
+easing = "linear"
+keys = [{ t = 0.0, value = [0.0, 0.0, -0.2] }, { t = 0.4, value = [0.1, 0.0, -0.2] }]
+"#;
+
+const SQUARE: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"><rect x="2" y="2" width="4" height="4"/></svg>"#;
+
+/// A data folder with the small study, its three scenes and their puppet.
+pub fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (path, text) in [
+        ("studies/shadow-puppets.toml", STUDY.to_owned()),
+        ("scenes/near.toml", SCENE.to_owned()),
+        ("scenes/far.toml", SCENE.replace("-0.2]", "-0.5]")),
+        ("scenes/dance.toml", format!("{SCENE}{TIMELINE}")),
+        ("puppets/square.svg", SQUARE.to_owned()),
+    ] {
+        let path = folder.path().join(path);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+/// What came back.
+pub struct Answer {
+    pub status: StatusCode,
+    pub headers: HeaderMap,
+    pub bytes: Vec<u8>,
+}
+
+impl Answer {
+    pub fn json(&self) -> Value {
+        serde_json::from_slice(&self.bytes).unwrap_or_else(|_| panic!("no JSON: {}", self.text()))
+    }
+
+    pub fn text(&self) -> String {
+        String::from_utf8_lossy(&self.bytes).into_owned()
+    }
+
+    pub fn header(&self, name: &str) -> &str {
+        self.headers.get(name).map_or("", |value| value.to_str().unwrap())
+    }
+}
+
+pub struct Client {
+    pub server: Server,
+    pub folder: TempDir,
+    pub drawer: Arc<Placeholder>,
+}
+
+pub fn config(folder: &Path, maker: Arc<dyn Maker>) -> ServerConfig {
+    ServerConfig {
+        data: folder.to_owned(),
+        listen: ([127, 0, 0, 1], 0).into(),
+        password: Some(PASSWORD.to_owned()),
+        secure_cookies: false,
+        maker,
+        progress: Arc::new(|_| {}),
+    }
+}
+
+impl Client {
+    /// A server with the small study, its stimuli made.
+    pub async fn ready() -> Client {
+        let client = Client::unready().await;
+        client.server.make_stimuli(&|_| {}).await.unwrap();
+        client
+    }
+
+    /// The same before its stimuli are made.
+    pub async fn unready() -> Client {
+        let folder = folder();
+        let drawer = Arc::new(Placeholder::default());
+        let server = Server::open(&config(folder.path(), drawer.clone())).await.unwrap();
+        Client { server, folder, drawer }
+    }
+
+    pub async fn send(&self, request: Request<Body>) -> Answer {
+        let response = self.server.router().oneshot(request).await.unwrap();
+        let (status, headers) = (response.status(), response.headers().clone());
+        let bytes = to_bytes(response.into_body(), 64 << 20).await.unwrap().to_vec();
+        Answer { status, headers, bytes }
+    }
+
+    /// A request with a JSON body (none for null) and a bearer token (none for "").
+    pub async fn call(&self, method: &str, path: &str, token: &str, body: &Value) -> Answer {
+        let mut request = Request::builder().method(Method::from_bytes(method.as_bytes()).unwrap()).uri(path);
+        if !token.is_empty() {
+            request = request.header(header::AUTHORIZATION, format!("Bearer {token}"));
+        }
+        let body = if body.is_null() {
+            Body::empty()
+        } else {
+            request = request.header(header::CONTENT_TYPE, "application/json");
+            Body::from(body.to_string())
+        };
+        self.send(request.body(body).unwrap()).await
+    }
+
+    pub async fn get(&self, path: &str) -> Answer {
+        self.call("GET", path, "", &Value::Null).await
+    }
+
+    /// Signs in; answers the cookie.
+    pub async fn sign_in(&self) -> String {
+        let answer = self.call("POST", "/api/v1/login", "", &json!({ "password": PASSWORD })).await;
+        assert_eq!(answer.status, StatusCode::NO_CONTENT, "{}", answer.text());
+        answer.header("set-cookie").split(';').next().unwrap().to_owned()
+    }
+
+    /// A GET as a signed-in researcher.
+    pub async fn research(&self, cookie: &str, path: &str) -> Answer {
+        let request = Request::get(path).header(header::COOKIE, cookie).body(Body::empty()).unwrap();
+        self.send(request).await
+    }
+
+    /// Begins a session and consents; answers its address, token and state.
+    pub async fn join(&self, params: Value) -> (String, String, Value) {
+        let body = json!({ "params": params, "display": { "width": 1280 } });
+        let answer = self.call("POST", "/api/v1/studies/shadow-puppets/sessions", "", &body).await;
+        assert_eq!(answer.status, StatusCode::CREATED, "{}", answer.text());
+        let state = answer.json();
+        let token = state["token"].as_str().unwrap().to_owned();
+        let path = format!("/api/v1/sessions/{}", state["session_id"].as_str().unwrap());
+        let answer = self.call("POST", &format!("{path}/consent"), &token, &Value::Null).await;
+        assert_eq!(answer.status, StatusCode::OK, "{}", answer.text());
+        (path, token, answer.json())
+    }
+
+    /// Answers one trial.
+    pub async fn choose(&self, path: &str, token: &str, trial: u32, choice: &str) -> Answer {
+        self.call("PUT", &format!("{path}/trials/{trial}"), token, &body_of(choice)).await
+    }
+
+    /// Takes the whole study with one choice; answers the completion.
+    pub async fn take(&self, params: Value, choices: [&str; 3]) -> Value {
+        let (path, token, _) = self.join(params).await;
+        for (trial, choice) in (0..).zip(choices) {
+            assert_eq!(self.choose(&path, &token, trial, choice).await.status, StatusCode::OK);
+        }
+        let answer = self.call("POST", &format!("{path}/complete"), &token, &Value::Null).await;
+        assert_eq!(answer.status, StatusCode::OK, "{}", answer.text());
+        answer.json()
+    }
+}
+
+/// An answer as the participant's page sends it.
+pub fn body_of(choice: &str) -> Value {
+    json!({
+        "choice": choice, "rt": 812.5, "onset": 100.25, "time_elapsed": 5000, "trial_type": "two-alternative",
+        "plugin_version": "0.1.0", "input": "keyboard", "scale": 1.0, "device_pixel_ratio": 1.0, "viewport": [1280, 800],
+        "refresh_hz": 60.0, "reload_count": 0, "timestamp": "2026-11-22T10:30:00.000Z", "frames": { "left": [1, 2, 3] },
+    })
+}

@@ -1,0 +1,9 @@
+//! The server through its router: what a browser and a researcher can do, and what they cannot.
+#![allow(clippy::unwrap_used)]
+
+mod bad_requests;
+mod client;
+mod making;
+mod placeholder;
+mod research;
+mod taking_part;

@@ -1,0 +1,135 @@
+use crate::client::{Client, config};
+use crate::placeholder::Placeholder;
+use kelir_server::{Library, Made, Maker, Server, StartError, Task};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Fails from the nth stimulus on.
+struct Failing {
+    inner: Placeholder,
+    good: AtomicUsize,
+}
+
+impl Maker for Failing {
+    fn identity(&self, task: &Task<'_>, library: &Library) -> Result<String, String> {
+        self.inner.identity(task, library)
+    }
+
+    fn make(
+        &self,
+        task: &Task<'_>,
+        library: &Library,
+        progress: &mut dyn FnMut(f64, &str),
+    ) -> Result<Made, String> {
+        if self.good.fetch_sub(1, Ordering::SeqCst) == 0 {
+            return Err("the lamp went out".to_owned());
+        }
+        self.inner.make(task, library, progress)
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn nothing_is_drawn_twice_and_damage_is_drawn_again() {
+    let client = Client::ready().await;
+    let drawn = || client.drawer.drawn.load(Ordering::SeqCst);
+    assert_eq!(drawn(), 6);
+    let config = config(client.folder.path(), client.drawer.clone());
+    let again = Server::open(&config).await.unwrap();
+    again.make_stimuli(&|_| {}).await.unwrap();
+    assert_eq!(drawn(), 6, "a restart draws nothing");
+
+    let hash = again.store().study_versions("shadow-puppets").await.unwrap()[0].config_hash.clone();
+    let still = again.store().study_stimuli("shadow-puppets", &hash).await.unwrap()[0].sha256.clone();
+    std::fs::write(client.folder.path().join("stimuli").join(&still[..2]).join(&still), b"rubbish").unwrap();
+    let text = client.get(&format!("/stimuli/{still}")).await;
+    assert_eq!(text.status.as_u16(), 500, "damaged bytes are never shown");
+    again.make_stimuli(&|_| {}).await.unwrap();
+    assert_eq!(drawn(), 7);
+    assert_eq!(client.get(&format!("/stimuli/{still}")).await.status.as_u16(), 200);
+
+    // Negative control: another size is another stimulus.
+    let study = crate::client::STUDY.replace("[64, 36]", "[80, 45]");
+    std::fs::write(client.folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
+    Server::open(&config).await.unwrap().make_stimuli(&|_| {}).await.unwrap();
+    assert_eq!(drawn(), 13);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_interrupted_run_goes_on_where_it_stopped() {
+    let client = Client::unready().await;
+    let failing = Arc::new(Failing { inner: Placeholder::default(), good: AtomicUsize::new(3) });
+    let mut config = config(client.folder.path(), failing);
+    let server = Server::open(&config).await.unwrap();
+    let error = server.make_stimuli(&|_| {}).await.unwrap_err();
+    assert!(error.contains("the lamp went out"), "{error}");
+    config.maker = client.drawer.clone();
+    Server::open(&config).await.unwrap().make_stimuli(&|_| {}).await.unwrap();
+    assert_eq!(
+        client.drawer.drawn.load(Ordering::SeqCst),
+        3,
+        "the three that were stored are taken as they are"
+    );
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn progress_counts_up_to_the_end() {
+    let client = Client::unready().await;
+    let events = std::sync::Mutex::new(Vec::new());
+    client.server.make_stimuli(&|making| events.lock().unwrap().push(making)).await.unwrap();
+    let events = events.into_inner().unwrap();
+    assert!(events.windows(2).all(|w| w[0].done <= w[1].done));
+    let last = events.last().unwrap();
+    assert_eq!((last.study.as_str(), last.done, last.total), ("shadow-puppets", 6, 6));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn pictures_of_ones_own_take_the_place_of_drawn_ones() {
+    let client = Client::unready().await;
+    let photo = |size: u32| {
+        let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec();
+        png.extend(size.to_be_bytes());
+        png.extend(36u32.to_be_bytes());
+        png
+    };
+    let folder = client.folder.path().join("studies/photos");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("a.png"), photo(64)).unwrap();
+    std::fs::write(folder.join("b.png"), photo(65)).unwrap();
+    std::fs::write(folder.join("c.png"), b"GIF89a").unwrap();
+    let study = |a: &str, b: &str| {
+        let (stills, _) = crate::client::STUDY.rsplit_once("[[blocks]]").unwrap();
+        let files = format!("[conditions.mc]\nfiles = {{ a = \"photos/{a}\", b = \"photos/{b}\" }}");
+        stills.replace("[conditions.mc]\ntechnique = \"mc\"", &files)
+    };
+    let try_with = async |a: &str, b: &str| {
+        std::fs::write(client.folder.path().join("studies/shadow-puppets.toml"), study(a, b)).unwrap();
+        match Server::open(&config(client.folder.path(), client.drawer.clone())).await {
+            Ok(server) => server.make_stimuli(&|_| {}).await,
+            Err(error) => Err(error.to_string()),
+        }
+    };
+    try_with("a.png", "a.png").await.unwrap();
+    let wrong_size = try_with("a.png", "b.png").await.unwrap_err();
+    assert!(wrong_size.contains("65 × 36") && wrong_size.contains("64 × 36"), "{wrong_size}");
+    assert!(try_with("a.png", "c.png").await.unwrap_err().contains("neither PNG nor JPEG"));
+    let missing = try_with("a.png", "none.png").await.unwrap_err();
+    assert!(missing.contains("conditions.mc.files.b"), "{missing}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_wrong_study_stops_the_start_with_every_problem() {
+    let folder = crate::client::folder();
+    let study = crate::client::STUDY
+        .replace("technique = \"mc\"", "technique = \"mc\"\nspq = 3")
+        .replace("far.toml", "nobody.toml")
+        .replace("dance.toml", "near.toml");
+    std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
+    let error =
+        Server::open(&config(folder.path(), Arc::new(Placeholder::default()))).await.map(|_| ()).unwrap_err();
+    assert!(matches!(error, StartError::Study(_)));
+    let text = error.to_string();
+    for expected in ["conditions.mc", "spq", "nobody.toml", "blocks[1].pairs[0].scene", "has no [timeline]"] {
+        assert!(text.contains(expected), "{expected} in {text}");
+    }
+    assert!(!folder.path().join("kelir.sqlite").exists(), "nothing was written");
+}

@@ -1,0 +1,166 @@
+use crate::client::{Client, PASSWORD, config};
+use axum::body::Body;
+use axum::http::{Request, StatusCode, header};
+use kelir_server::Server;
+use serde_json::json;
+
+#[tokio::test(flavor = "multi_thread")]
+async fn signing_in_and_out() {
+    let client = Client::ready().await;
+    let wrong = client.call("POST", "/api/v1/login", "", &json!({ "password": "gong" })).await;
+    assert_eq!(
+        (wrong.status, &wrong.json()["error"]["code"]),
+        (StatusCode::UNAUTHORIZED, &json!("wrong_password"))
+    );
+    let answer = client.call("POST", "/api/v1/login", "", &json!({ "password": PASSWORD })).await;
+    let cookie = answer.header("set-cookie").to_owned();
+    for part in ["kelir_session=", "HttpOnly", "SameSite=Strict", "Path=/"] {
+        assert!(cookie.contains(part), "{part} in {cookie}");
+    }
+    let cookie = cookie.split(';').next().unwrap();
+    let studies = client.research(cookie, "/api/v1/admin/studies").await.json();
+    assert_eq!(studies["studies"][0]["id"], "shadow-puppets");
+    assert_eq!(studies["studies"][0]["status"], "ready");
+    let out = Request::post("/api/v1/logout").header(header::COOKIE, cookie).body(Body::empty()).unwrap();
+    assert_eq!(client.send(out).await.status, StatusCode::NO_CONTENT);
+    assert_eq!(client.research(cookie, "/api/v1/admin/studies").await.status, StatusCode::UNAUTHORIZED);
+    assert_eq!(
+        client.research("kelir_session=x", "/api/v1/admin/studies").await.status,
+        StatusCode::UNAUTHORIZED
+    );
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn guessing_is_slowed_down() {
+    let client = Client::ready().await;
+    let mut statuses = Vec::new();
+    for guess in 0..9 {
+        let answer =
+            client.call("POST", "/api/v1/login", "", &json!({ "password": format!("guess {guess}") })).await;
+        statuses.push(answer.status.as_u16());
+    }
+    assert_eq!(statuses, [401, 401, 401, 401, 401, 401, 401, 401, 429]);
+    let right = client.call("POST", "/api/v1/login", "", &json!({ "password": PASSWORD })).await;
+    assert_eq!(right.status, StatusCode::TOO_MANY_REQUESTS);
+    assert!(right.header("retry-after").parse::<u64>().unwrap() > 0);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn results_are_what_the_answers_add_up_to() {
+    let client = Client::ready().await;
+    let cookie = client.sign_in().await;
+    let path = "/api/v1/admin/studies/shadow-puppets/results";
+    let empty = client.research(&cookie, path).await.json();
+    assert_eq!(empty["blocks"][0]["n"], 0);
+    assert!(empty["blocks"][0]["t"].is_null() && empty["blocks"][0]["note"].is_string());
+
+    for choices in [["left", "left", "left"], ["left", "right", "left"], ["right", "right", "right"]] {
+        client.take(json!({}), choices).await;
+    }
+    let (path_of_one, token, _) = client.join(json!({})).await;
+    client.choose(&path_of_one, &token, 0, "left").await;
+
+    let results = client.research(&cookie, path).await.json();
+    assert_eq!(results["participants"], json!({ "started": 4, "in_progress": 1, "completed": 3 }));
+    let hash = results["config_hash"].as_str().unwrap();
+    // The expected numbers come from the rows by the definition of t.
+    let rows = client.server.store().responses("shadow-puppets", hash).await.unwrap();
+    for (block, pairs) in [("stills", 2), ("loop", 1)] {
+        let mut by_session = std::collections::BTreeMap::<&str, Vec<f64>>::new();
+        for (row, _) in rows.iter().filter(|(row, _)| row.block_id == block) {
+            by_session
+                .entry(&row.session_id)
+                .or_default()
+                .push(f64::from(u8::from(row.chosen_condition == "pa")));
+        }
+        let counts: Vec<f64> =
+            by_session.values().filter(|c| c.len() == pairs).map(|c| c.iter().sum()).collect();
+        assert_eq!(counts.len(), 3);
+        let n = counts.len() as f64;
+        let mean = counts.iter().sum::<f64>() / n;
+        let sd = (counts.iter().map(|c| (c - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+        let got = results["blocks"].as_array().unwrap().iter().find(|b| b["id"] == block).unwrap();
+        assert!((got["mean"].as_f64().unwrap() - mean).abs() < 1e-12, "{got}");
+        assert!((got["sd"].as_f64().unwrap() - sd).abs() < 1e-12, "{got}");
+        if sd > 0.0 {
+            let t = (mean - pairs as f64 / 2.0) / (sd / n.sqrt());
+            assert!((got["t"].as_f64().unwrap() - t).abs() < 1e-12, "{got}");
+            assert!((0.0..=1.0).contains(&got["p"].as_f64().unwrap()));
+        } else {
+            assert!(got["t"].is_null() && got["note"].is_string(), "{got}");
+        }
+    }
+    assert_eq!(results["stimuli"].as_array().unwrap().len(), 6);
+
+    let offline = kelir_server::results::of_study(client.folder.path(), "shadow-puppets").await.unwrap();
+    assert_eq!(serde_json::to_value(&offline).unwrap(), results, "the command reads the same");
+    assert!(kelir_server::results::of_study(client.folder.path(), "nobody").await.is_err());
+    assert!(
+        kelir_server::results::of_study(&client.folder.path().join("none"), "shadow-puppets").await.is_err()
+    );
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_export_has_one_row_a_trial_and_a_codebook_for_every_column() {
+    let client = Client::ready().await;
+    client.take(json!({ "PROLIFIC_PID": "=cmd|' /C calc'!A0" }), ["left", "right", "left"]).await;
+    client.take(json!({ "PROLIFIC_PID": "5f0a" }), ["left", "right", "left"]).await;
+    let cookie = client.sign_in().await;
+    let answer = client.research(&cookie, "/api/v1/admin/studies/shadow-puppets/responses.csv").await;
+    assert_eq!(answer.header("content-type"), "text/csv; charset=utf-8");
+    let text = answer.text();
+    let lines: Vec<&str> = text.trim_end().split("\r\n").collect();
+    assert_eq!(lines.len(), 7);
+    assert!(!text.contains("=cmd"));
+    let header: Vec<&str> = lines[0].split(',').collect();
+    let codebook = client.research(&cookie, "/api/v1/admin/studies/shadow-puppets/codebook.csv").await.text();
+    let described: Vec<&str> =
+        codebook.trim_end().split("\r\n").skip(1).map(|l| l.split(',').next().unwrap()).collect();
+    assert_eq!(header, described);
+    let at = |name: &str| header.iter().position(|h| *h == name).unwrap();
+    for line in &lines[1..] {
+        // The one quoted cell, the stimuli, has a comma within: it is taken out before splitting.
+        let (before, rest) = line.split_once('"').unwrap();
+        let (_, after) = rest.rsplit_once('"').unwrap();
+        let cells: Vec<&str> = before.split(',').chain(after.split(',').skip(1)).collect();
+        assert_eq!(cells.len(), header.len(), "{line}");
+        let cell = |name: &str| cells[at(name)];
+        assert_eq!(cell("chosen_condition"), cell(&format!("{}_condition", cell("response"))));
+        assert_eq!(cell("target_chosen"), if cell("chosen_condition") == "pa" { "1" } else { "0" });
+        assert_eq!((cell("rt"), cell("time_elapsed"), cell("viewport_height")), ("812.5", "5000", "800"));
+        assert_eq!((cell("status"), cell("percent_complete")), ("completed", "100"));
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_started_server_listens_answers_and_stops() {
+    let client = Client::unready().await;
+    let handle = Server::start(config(client.folder.path(), client.drawer.clone())).await.unwrap();
+    handle.ready().await.unwrap();
+    let address = handle.address();
+    let get = move || {
+        use std::io::{Read, Write};
+        let mut stream = std::net::TcpStream::connect(address)?;
+        write!(stream, "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")?;
+        let mut text = String::new();
+        stream.read_to_string(&mut text).map(|_| text)
+    };
+    let text = tokio::task::spawn_blocking(get).await.unwrap().unwrap();
+    assert!(text.starts_with("HTTP/1.1 200"), "{text}");
+    handle.shutdown().await;
+    assert!(tokio::task::spawn_blocking(get).await.unwrap().is_err());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_leaked_database_holds_no_secret() {
+    let client = Client::ready().await;
+    let (_, token, _) = client.join(json!({})).await;
+    let cookie = client.sign_in().await;
+    client.server.store().close().await;
+    let bytes = std::fs::read(client.folder.path().join("kelir.sqlite")).unwrap();
+    let holds = |secret: &str| bytes.windows(secret.len()).any(|window| window == secret.as_bytes());
+    assert!(holds("CREATE TABLE"), "the search finds what is there");
+    for secret in [PASSWORD, &token, cookie.split('=').nth(1).unwrap()] {
+        assert!(!holds(secret));
+    }
+}
