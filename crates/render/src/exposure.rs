@@ -1,8 +1,9 @@
 //! The radiance that the display shows as white.
 
 use kelir_scene::{Exposure, Theatre};
+use rayon::prelude::*;
 
-use crate::{View, albedo, irradiance};
+use crate::{View, albedo, irradiance::UnitRows};
 
 /// White for these theatres (a still, or every frame of a timeline): the written radiance, or the brightest unshadowed
 /// pixel over all theatres and channels from the analytic E⁰ · albedo / π. It does not depend on the technique.
@@ -14,19 +15,26 @@ pub fn white<'a>(theatres: impl IntoIterator<Item = &'a Theatre>, view: &View) -
             return radiance;
         }
         let albedo = albedo::on_grid(&theatre.screen, view);
-        let mut sums = [0, 1, 2].map(|_| vec![0f64; view.size[0] * view.size[1]]);
-        for emitter in &theatre.lamp.emitters {
-            let unit =
-                irradiance::unit_image(&emitter.shape, theatre.lamp.position_m, &theatre.screen, view.size);
-            for (sum, radiance) in sums.iter_mut().zip(emitter.radiance) {
-                sum.iter_mut().zip(&unit).for_each(|(s, u)| *s += radiance * u);
+        let [w, h] = view.size;
+        let lamp = &theatre.lamp;
+        let units: Vec<_> = lamp
+            .emitters
+            .iter()
+            .map(|e| (e.radiance, UnitRows::new(&e.shape, lamp.position_m, &theatre.screen, view.size)))
+            .collect();
+        let row = |j: usize| {
+            let (mut unit, mut sums) = (vec![0f64; w], [0, 1, 2].map(|_| vec![0f64; w]));
+            for (radiance, rows) in &units {
+                rows.row(j, &mut unit);
+                for (sum, radiance) in sums.iter_mut().zip(radiance) {
+                    sum.iter_mut().zip(&unit).for_each(|(s, u)| *s += radiance * u);
+                }
             }
-        }
-        for (c, sum) in sums.iter().enumerate() {
-            for (k, e) in sum.iter().enumerate() {
-                brightest = brightest.max(e * f64::from(albedo.at(c, k)) / std::f64::consts::PI);
-            }
-        }
+            let lit =
+                |c: usize, i: usize| sums[c][i] * f64::from(albedo.at(c, j * w + i)) / std::f64::consts::PI;
+            (0..3).flat_map(|c| (0..w).map(move |i| (c, i))).fold(0f64, |m, (c, i)| m.max(lit(c, i)))
+        };
+        brightest = brightest.max((0..h).into_par_iter().map(row).reduce(|| 0.0, f64::max));
     }
     if brightest > 0.0 { brightest } else { 1.0 }
 }

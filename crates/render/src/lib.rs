@@ -7,11 +7,14 @@
 
 pub mod albedo;
 pub mod ambient;
+pub mod encode;
 pub mod exposure;
+pub mod file;
 pub mod frame;
 pub mod gpu;
 pub mod irradiance;
 pub mod project;
+mod simd;
 pub mod techniques;
 
 pub use exposure::white;

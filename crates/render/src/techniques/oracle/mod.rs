@@ -1,24 +1,44 @@
 //! The oracle: f64, no random numbers, slow and obvious; what every technique is held against, on crops.
+//!
+//! Every plane's texel edges are projected through the screen point onto the lamp's plane. Between neighbouring edges all
+//! masks are constant, so both visibilities are finite sums over such cells: of areas (geometric), or of Lambert's
+//! formula (irradiance). An `area` pixel seen through one plane is a finite sum too: a texel's overlap with the box,
+//! averaged over the pixel, has a closed form. Several planes, and irradiance, are averaged over the pixel by midpoints,
+//! whose number is doubled until two levels differ by less than the tolerance.
+
+mod renderer;
+mod visibility;
 
 use serde::{Deserialize, Serialize};
 
 use crate::{RenderError, Renderer};
 
+pub use renderer::Oracle;
+pub use visibility::{Point, Visibility, visibility};
+
 /// What can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Knobs {
-    /// Where nothing is a finite sum, the emitter is subdivided until two levels differ by less than this.
+    /// Where nothing is a finite sum, the emitter or pixel is subdivided until two levels differ by less than this.
     pub tolerance: f64,
+    /// Draw E⁰ · Vgeo, as PA does, in place of the true irradiance.
+    pub geometric: bool,
 }
 
 impl Default for Knobs {
     fn default() -> Self {
-        Self { tolerance: 1e-7 }
+        Self { tolerance: 1e-4, geometric: false }
     }
 }
 
 /// The renderer for `knobs`; it has one backend.
-pub fn renderer(_knobs: &Knobs) -> Result<Box<dyn Renderer>, RenderError> {
-    Err(RenderError::Knob("oracle is not built yet".into()))
+pub fn renderer(knobs: &Knobs) -> Result<Box<dyn Renderer>, RenderError> {
+    if !(knobs.tolerance > 0.0 && knobs.tolerance <= 0.1) {
+        return Err(RenderError::Knob(format!("tolerance = {}: above 0, at most 0.1", knobs.tolerance)));
+    }
+    Ok(Box::new(Oracle::new(*knobs)))
 }
+
+#[cfg(test)]
+mod tests;

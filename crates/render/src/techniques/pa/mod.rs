@@ -4,16 +4,31 @@
 //! `area` pixels are its mean over the pixel: box ⊛ pixel is a trapezoid window, and since a table is piecewise
 //! bilinear the mean is a finite sum, so the native code draws it exactly. Drawn with n × n sub-samples instead, a straight
 //! edge errs by at most 1 / (8 w n²) where the box is w pixels wide.
+//!
+//! With several planes the mean over the pixel of a product is not the product of means: where a box is narrower than
+//! four pixels each pixel is cut into n × n parts, n = ⌈4 / w⌉ (at most 4). What is left is a covariance inside a part of
+//! a pixel, at most ¼ of the product of both planes' change across it.
+
+mod background;
+mod native;
+mod plan;
+mod rows;
+pub mod table;
+pub mod window;
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Backend, RenderError, Renderer};
 
+pub use native::Native;
+pub use plan::check_view;
+
 /// What can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Knobs {
-    /// Each emitter is split into `split × split` pieces whose products over the planes are averaged; 1 is the paper's way.
+    /// Each emitter is split into `split × split` pieces (1..=64) whose products over the planes are averaged; 1 is the
+    /// paper's way.
     pub split: u32,
     /// How pieces weigh.
     pub weights: Weights,
@@ -22,6 +37,16 @@ pub struct Knobs {
 impl Default for Knobs {
     fn default() -> Self {
         Self { split: 1, weights: Weights::Area }
+    }
+}
+
+impl Knobs {
+    /// Errors: a knob out of its range.
+    pub fn check(&self) -> Result<(), RenderError> {
+        if !(1..=64).contains(&self.split) {
+            return Err(RenderError::Knob(format!("split = {}: from 1 to 64", self.split)));
+        }
+        Ok(())
     }
 }
 
@@ -37,6 +62,13 @@ pub enum Weights {
 }
 
 /// The renderer for `knobs` on `backend`.
-pub fn renderer(_knobs: &Knobs, _backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
-    Err(RenderError::Gpu("pa is not built yet".into()))
+pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
+    knobs.check()?;
+    match backend {
+        Backend::Gpu => Err(RenderError::Gpu("pa has no GPU backend yet".into())),
+        Backend::Auto | Backend::Cpu => Ok(Box::new(Native::new(*knobs))),
+    }
 }
+
+#[cfg(test)]
+mod tests;

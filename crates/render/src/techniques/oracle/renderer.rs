@@ -1,0 +1,154 @@
+//! The oracle as a technique.
+
+use kelir_scene::{Ambient, EmitterShape, Theatre};
+use rayon::prelude::*;
+
+use super::{Knobs, Point, Visibility, visibility};
+use crate::project::pixel_m;
+use crate::{Frame, Layer, RenderError, Renderer, Stats, View, albedo, ambient, encode, irradiance};
+
+/// Draws with [`visibility`] at every pixel.
+#[derive(Debug)]
+pub struct Oracle {
+    knobs: Knobs,
+}
+
+/// One pixel: radiance, then per emitter both visibilities.
+type PixelValue = ([f64; 3], Vec<Visibility>);
+
+impl Oracle {
+    /// For `knobs`.
+    pub fn new(knobs: Knobs) -> Self {
+        Self { knobs }
+    }
+
+    fn check(theatre: &Theatre, view: &View) -> Result<(), RenderError> {
+        crate::pa::check_view(theatre, view)?;
+        let refuse = |reason| Err(RenderError::Inapplicable { technique: "oracle", reason });
+        for (k, e) in theatre.lamp.emitters.iter().enumerate() {
+            if let EmitterShape::Disk { .. } = e.shape {
+                return refuse(format!("lamp.emitters[{k}].shape = \"disk\": not supported yet"));
+            }
+        }
+        for (i, plane) in theatre.planes.iter().enumerate() {
+            if plane.tilt_deg != [0.0; 2] {
+                return refuse(format!("puppets[{i}].tilt_deg = {:?}: not supported yet", plane.tilt_deg));
+            }
+        }
+        if let Ambient::Dome { .. } = theatre.ambient {
+            return refuse("ambient.model = \"dome\" is not supported yet".into());
+        }
+        Ok(())
+    }
+
+    /// The pixels of the crop `columns` × `rows`, row-major: radiance in f64 and each emitter's visibilities.
+    pub fn crop(
+        &self,
+        theatre: &Theatre,
+        view: &View,
+        columns: std::ops::Range<usize>,
+        rows: std::ops::Range<usize>,
+    ) -> Result<Vec<PixelValue>, RenderError> {
+        Self::check(theatre, view)?;
+        let albedo = albedo::on_grid(&theatre.screen, view);
+        let pixels: Vec<_> = rows.flat_map(|j| columns.clone().map(move |i| (i, j))).collect();
+        Ok(pixels.into_par_iter().map(|(i, j)| self.pixel(theatre, view, &albedo, i, j)).collect())
+    }
+
+    fn pixel(
+        &self,
+        theatre: &Theatre,
+        view: &View,
+        albedo: &albedo::PixelAlbedo,
+        i: usize,
+        j: usize,
+    ) -> PixelValue {
+        let point = Point::pixel(theatre, view, i, j);
+        let centre = pixel_m(&theatre.screen, view.size, i as f64, j as f64);
+        let emitters = 0..theatre.lamp.emitters.len();
+        let seen = |theatre: &Theatre| -> Vec<Visibility> {
+            emitters.clone().map(|e| visibility(theatre, e, point, self.knobs.tolerance)).collect()
+        };
+        let visibilities = seen(theatre);
+        // What each plane alone lets through: the paper's ambient light weighs distances by it.
+        let alone: Vec<(f64, Vec<Visibility>)> = match theatre.ambient {
+            Ambient::Paper { .. } => theatre
+                .planes
+                .iter()
+                .map(|plane| {
+                    (-plane.centre_m.z, seen(&Theatre { planes: vec![plane.clone()], ..theatre.clone() }))
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
+        let units: Vec<f64> = theatre
+            .lamp
+            .emitters
+            .iter()
+            .map(|e| irradiance::unit(&e.shape, theatre.lamp.position_m, centre))
+            .collect();
+        let radiance = [0, 1, 2].map(|c| {
+            let weight = |e: usize| theatre.lamp.emitters[e].radiance[c] * units[e];
+            let all: f64 = emitters.clone().map(weight).sum();
+            if all == 0.0 {
+                return 0.0;
+            }
+            let mean = |of: &[Visibility]| {
+                let one =
+                    |e: usize| if self.knobs.geometric { of[e].geometric[c] } else { of[e].irradiance[c] };
+                emitters.clone().map(|e| weight(e) * one(e)).sum::<f64>() / all
+            };
+            let lit = f64::from(albedo.at(c, i + j * view.size[0])) * all / std::f64::consts::PI;
+            let v = mean(&visibilities);
+            let shade = match theatre.ambient {
+                Ambient::Paper { k_d_m, s } => {
+                    let distance_m = ambient::distance_m(alone.iter().map(|(d, of)| (*d, mean(of))));
+                    v + ambient::share(v, distance_m, k_d_m, s[c])
+                }
+                _ => v,
+            };
+            lit * shade
+        });
+        (radiance, visibilities)
+    }
+}
+
+impl Renderer for Oracle {
+    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
+        let values = self.crop(theatre, view, 0..view.size[0], 0..view.size[1])?;
+        let radiance = [0, 1, 2].map(|c| values.iter().map(|(l, _)| l[c] as f32).collect());
+        let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
+        let mut layers = Vec::new();
+        for (e, emitter) in theatre.lamp.emitters.iter().enumerate() {
+            for (c, suffix) in [".R", ".G", ".B"].iter().enumerate().take(if coloured { 3 } else { 1 }) {
+                let suffix = if coloured { *suffix } else { "" };
+                layers.push(Layer {
+                    name: format!("Vgeo.{}{suffix}", emitter.name),
+                    values: values.iter().map(|(_, v)| v[e].geometric[c] as f32).collect(),
+                });
+                layers.push(Layer {
+                    name: format!("Virr.{}{suffix}", emitter.name),
+                    values: values.iter().map(|(_, v)| v[e].irradiance[c] as f32).collect(),
+                });
+            }
+        }
+        let stats = Stats { counts: [("pixels".into(), values.len() as u64)].into(), steps_ms: Vec::new() };
+        Ok(Frame { size: view.size, radiance, layers, stats })
+    }
+
+    fn display(
+        &mut self,
+        theatre: &Theatre,
+        view: &View,
+        white: f64,
+        out: &mut [u32],
+    ) -> Result<Stats, RenderError> {
+        let frame = self.radiance(theatre, view)?;
+        out.copy_from_slice(&encode::display(&frame, white));
+        Ok(frame.stats)
+    }
+
+    fn adapter(&self) -> String {
+        "oracle f64".into()
+    }
+}

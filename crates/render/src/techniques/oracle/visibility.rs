@@ -1,0 +1,203 @@
+//! Exact visibilities at one point, and means over one pixel.
+
+use glam::{DVec2, DVec3};
+use kelir_scene::{EmitterShape, Plane, Theatre};
+
+use crate::{Pixel, View, irradiance, project::pixel_m};
+
+/// Where on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Point {
+    /// A point, metres.
+    At(DVec2),
+    /// The mean over a rectangle given by its centre and full sides, metres.
+    Over(DVec2, DVec2),
+}
+
+impl Point {
+    /// Pixel (i, j) of `view`, by its rule.
+    pub fn pixel(theatre: &Theatre, view: &View, i: usize, j: usize) -> Self {
+        let at = pixel_m(&theatre.screen, view.size, i as f64, j as f64);
+        match view.pixel {
+            Pixel::Centre => Self::At(at),
+            Pixel::Area => Self::Over(
+                at,
+                DVec2::new(
+                    theatre.screen.width_m / view.size[0] as f64,
+                    theatre.screen.height_m / view.size[1] as f64,
+                ),
+            ),
+        }
+    }
+}
+
+/// One emitter seen from one point, per channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Visibility {
+    /// Vgeo: mean transmittance over the emitter's area.
+    pub geometric: [f64; 3],
+    /// Virr: E / E⁰.
+    pub irradiance: [f64; 3],
+}
+
+/// A plane's texel grid as lines on the lamp's plane, seen from one point.
+struct Grid<'a> {
+    plane: &'a Plane,
+    /// Emitter coordinates (lamp-centred metres) of texel lines x = 0, 1, …: `origin + step · line`.
+    origin: DVec2,
+    step: DVec2,
+}
+
+impl<'a> Grid<'a> {
+    /// X on the puppet's plane projects from P to P + (X − P) · z_l / d.
+    fn new(plane: &'a Plane, lamp_m: DVec3, p: DVec2) -> Self {
+        let grow = lamp_m.z / plane.centre_m.z;
+        let corner = plane.centre_m.truncate() + 0.5 * DVec2::new(-plane.size_m[0], plane.size_m[1]);
+        let texel = DVec2::new(
+            plane.size_m[0] / plane.mask.width as f64,
+            -plane.size_m[1] / plane.mask.height as f64,
+        );
+        Self { plane, origin: p + (corner - p) * grow - lamp_m.truncate(), step: texel * grow }
+    }
+
+    /// Appends the lines strictly inside ± `half` along one axis.
+    fn lines(&self, axis: usize, half: f64, out: &mut Vec<f64>) {
+        let count = [self.plane.mask.width, self.plane.mask.height][axis];
+        let (origin, step) = (self.origin[axis], self.step[axis]);
+        let mut ends = [(-half - origin) / step, (half - origin) / step];
+        ends.sort_by(f64::total_cmp);
+        let from = ends[0].floor().max(0.0) as usize;
+        let to = ends[1].ceil().clamp(0.0, count as f64) as usize;
+        out.extend((from..=to.max(from)).map(|k| origin + step * k as f64).filter(|x| x.abs() < half));
+    }
+
+    /// Texel that holds emitter coordinate `at` along `axis`; None outside the grid.
+    fn texel(&self, axis: usize, at: f64) -> Option<usize> {
+        let count = [self.plane.mask.width, self.plane.mask.height][axis];
+        let t = (at - self.origin[axis]) / self.step[axis];
+        (t >= 0.0 && t < count as f64).then_some(t as usize)
+    }
+}
+
+fn segments(grids: &[Grid], axis: usize, half: f64) -> Vec<[f64; 2]> {
+    let mut lines = vec![-half, half];
+    grids.iter().for_each(|g| g.lines(axis, half, &mut lines));
+    lines.sort_by(f64::total_cmp);
+    lines.windows(2).map(|w| [w[0], w[1]]).filter(|[a, b]| b > a).collect()
+}
+
+/// Both visibilities of emitter `e` at a point; the emitter must be a rectangle and every plane parallel to the screen.
+fn at(theatre: &Theatre, e: usize, p: DVec2) -> Visibility {
+    let (lamp, shape) = (theatre.lamp.position_m, &theatre.lamp.emitters[e].shape);
+    let grids: Vec<Grid> = theatre.planes.iter().map(|plane| Grid::new(plane, lamp, p)).collect();
+    let [a, b] = shape.half_extent_m();
+    let (xs, ys) = (segments(&grids, 0, a), segments(&grids, 1, b));
+    let columns: Vec<Vec<Option<usize>>> =
+        xs.iter().map(|[x0, x1]| grids.iter().map(|g| g.texel(0, 0.5 * (x0 + x1))).collect()).collect();
+    let mut result = Visibility::default();
+    let whole = irradiance::unit(shape, lamp, p);
+    for [y0, y1] in ys {
+        let rows: Vec<_> = grids.iter().map(|g| g.texel(1, 0.5 * (y0 + y1))).collect();
+        for ([x0, x1], columns) in xs.iter().zip(&columns) {
+            let mut tau = [1.0; 3];
+            for ((grid, x), y) in grids.iter().zip(columns).zip(&rows) {
+                if let (Some(x), Some(y)) = (x, y) {
+                    (0..3).for_each(|c| tau[c] *= grid.plane.mask.transmittance(c, *x, *y));
+                }
+            }
+            if tau == [0.0; 3] {
+                continue;
+            }
+            let area = (x1 - x0) * (y1 - y0) / shape.area_m2();
+            let cell = EmitterShape::Rectangle { size_m: [x1 - x0, y1 - y0] };
+            let centre = lamp + DVec3::new(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.0);
+            let light = irradiance::unit(&cell, centre, p) / whole;
+            for c in 0..3 {
+                result.geometric[c] += tau[c] * area;
+                result.irradiance[c] += tau[c] * light;
+            }
+        }
+    }
+    result
+}
+
+/// ∫ max(t, 0) over t ± p/2, divided by p: the ramp that texel overlaps are made of, averaged over a pixel.
+fn mean_ramp(t: f64, p: f64) -> f64 {
+    let square = |t: f64| t.max(0.0).powi(2);
+    (square(t + 0.5 * p) - square(t - 0.5 * p)) / (2.0 * p)
+}
+
+/// Geometric visibility through one plane, averaged over a pixel of `sides`: overlaps of texels and box as ramps.
+fn over_one_plane(theatre: &Theatre, e: usize, centre: DVec2, sides: DVec2) -> [f64; 3] {
+    let (lamp, plane) = (theatre.lamp.position_m, &theatre.planes[0]);
+    let ratio = plane.centre_m.z / lamp.z;
+    let box_centre = centre * (1.0 - ratio) + lamp.truncate() * ratio - plane.centre_m.truncate();
+    let pixel = sides * (1.0 - ratio);
+    let half = DVec2::from(theatre.lamp.emitters[e].shape.half_extent_m()) * ratio;
+    let weights = |axis: usize, count: usize, flip: f64| -> Vec<(usize, f64)> {
+        let texel = plane.size_m[axis] / count as f64;
+        (0..count)
+            .filter_map(|k| {
+                // Measured from the box's centre.
+                let from = (k as f64 * texel - 0.5 * plane.size_m[axis]) - flip * box_centre[axis];
+                let to = from + texel;
+                let ramp = |t: f64| mean_ramp(t, pixel[axis]);
+                let overlap = ramp(half[axis] - from) - ramp(half[axis] - to) - ramp(-half[axis] - from)
+                    + ramp(-half[axis] - to);
+                (overlap > 0.0).then_some((k, overlap / (2.0 * half[axis])))
+            })
+            .collect()
+    };
+    let (xs, ys) = (weights(0, plane.mask.width, 1.0), weights(1, plane.mask.height, -1.0));
+    let mut shadow = [0.0; 3];
+    for (y, wy) in &ys {
+        for (x, wx) in &xs {
+            for (c, s) in shadow.iter_mut().enumerate() {
+                *s += wx * wy * (1.0 - plane.mask.transmittance(c, *x, *y));
+            }
+        }
+    }
+    shadow.map(|s| 1.0 - s)
+}
+
+/// Visibilities of emitter `e`; means over pixels of several planes, and irradiance means, to `tolerance`. `planes` must be parallel to the
+/// screen and the emitter a rectangle.
+pub fn visibility(theatre: &Theatre, e: usize, point: Point, tolerance: f64) -> Visibility {
+    match point {
+        Point::At(p) => at(theatre, e, p),
+        Point::Over(centre, sides) => {
+            let mean = |n: usize| {
+                let mut sum = Visibility::default();
+                for j in 0..n {
+                    for i in 0..n {
+                        let part = (DVec2::new(i as f64, j as f64) + 0.5) / n as f64 - 0.5;
+                        let v = at(theatre, e, centre + part * sides);
+                        for c in 0..3 {
+                            sum.geometric[c] += v.geometric[c] / (n * n) as f64;
+                            sum.irradiance[c] += v.irradiance[c] / (n * n) as f64;
+                        }
+                    }
+                }
+                sum
+            };
+            let mut n = 2;
+            let mut result = mean(1);
+            loop {
+                let finer = mean(n);
+                let change = (0..3).fold(0f64, |m, c| {
+                    m.max((finer.geometric[c] - result.geometric[c]).abs())
+                        .max((finer.irradiance[c] - result.irradiance[c]).abs())
+                });
+                result = finer;
+                if change < tolerance || n >= 64 {
+                    break;
+                }
+                n *= 2;
+            }
+            if theatre.planes.len() == 1 {
+                result.geometric = over_one_plane(theatre, e, centre, sides);
+            }
+            result
+        }
+    }
+}

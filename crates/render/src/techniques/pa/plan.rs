@@ -1,0 +1,197 @@
+//! What one drawing needs, worked out before any pixel: the pieces of the lamp, the boxes of every column and row, the
+//! tables and their fixed-point scales.
+
+use glam::{DVec2, DVec3};
+use kelir_scene::{Ambient, EmitterShape, Theatre};
+
+use super::{Knobs, Weights, window::Windows};
+use crate::project::{ShadowBox, pixel_m};
+use crate::{Pixel, RenderError, View};
+
+/// A rectangle of an emitter.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// Which emitter it belongs to.
+    pub emitter: usize,
+    /// Its centre, metres.
+    pub centre_m: DVec3,
+    /// Its full sides, metres.
+    pub size_m: [f64; 2],
+}
+
+/// One plane seen from one piece.
+#[derive(Clone, Debug)]
+pub struct Lookup {
+    /// Index into the theatre's planes.
+    pub plane: usize,
+    /// Index into the plan's pieces.
+    pub piece: usize,
+    /// Boxes of every column (of sub-pixels).
+    pub x: Windows,
+    /// Boxes of every row (of sub-pixels).
+    pub y: Windows,
+    /// Row weights are multiplied by `2^shift / unit` and rounded to integers.
+    pub shift: u32,
+    /// min(1, height of the box in texels).
+    pub unit: f64,
+    /// From fixed-point sums to mean opacity.
+    pub norm: f64,
+}
+
+/// Everything but the pixels.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Sub-pixels a pixel and axis.
+    pub sub: usize,
+    /// Pieces, grouped by emitter.
+    pub pieces: Vec<Piece>,
+    /// Planes × pieces; planes off the beam are absent.
+    pub lookups: Vec<Lookup>,
+    /// Planes with any look-up.
+    pub planes: Vec<usize>,
+    /// Per plane of the theatre: whether its tables need u64 sums.
+    pub wide: Vec<bool>,
+    /// 3 where a puppet on the beam is coloured, else 1.
+    pub channels: usize,
+    /// Distances from the screen, per plane of the theatre.
+    pub distance_m: Vec<f64>,
+}
+
+fn refuse(reason: String) -> RenderError {
+    RenderError::Inapplicable { technique: "pa", reason }
+}
+
+/// Checks the view against the screen: sizes above zero, and square pixels to within half a pixel.
+pub fn check_view(theatre: &Theatre, view: &View) -> Result<(), RenderError> {
+    let [w, h] = view.size;
+    if w == 0 || h == 0 || w > 1 << 16 || h > 1 << 16 {
+        return Err(RenderError::View(format!("size = {w}x{h}: each side from 1 to 65536 pixels")));
+    }
+    let (screen_w, screen_h) = (theatre.screen.width_m, theatre.screen.height_m);
+    let ideal = w as f64 * screen_h / screen_w;
+    if (ideal - h as f64).abs() > 0.5 && (h as f64 * screen_w / screen_h - w as f64).abs() > 0.5 {
+        return Err(RenderError::View(format!(
+            "size = {w}x{h}: the screen is {screen_w} m x {screen_h} m, so {w} pixels of width need {} of height",
+            ideal.round().max(1.0)
+        )));
+    }
+    Ok(())
+}
+
+impl Plan {
+    /// Errors: what this code can't draw truthfully.
+    pub fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
+        check_view(theatre, view)?;
+        let lamp = theatre.lamp.position_m;
+        if let Ambient::Dome { .. } = theatre.ambient {
+            return Err(refuse(
+                "ambient.model = \"dome\" is not supported yet; use \"none\" or \"paper\"".into(),
+            ));
+        }
+        for (i, plane) in theatre.planes.iter().enumerate() {
+            if plane.tilt_deg != [0.0; 2] {
+                return Err(refuse(format!(
+                    "puppets[{i}].tilt_deg = {:?}: not supported yet",
+                    plane.tilt_deg
+                )));
+            }
+        }
+        let mut pieces = Vec::new();
+        // One plane splits exactly into pieces of equal area, so splitting would change nothing.
+        let split =
+            if theatre.planes.len() < 2 && knobs.weights == Weights::Area { 1 } else { knobs.split as usize };
+        for (k, emitter) in theatre.lamp.emitters.iter().enumerate() {
+            let EmitterShape::Rectangle { size_m: [w, h] } = emitter.shape else {
+                return Err(refuse(format!("lamp.emitters[{k}].shape = \"disk\": not supported yet")));
+            };
+            let part = |i: usize, side: f64| ((i as f64 + 0.5) / split as f64 - 0.5) * side;
+            for j in 0..split {
+                for i in 0..split {
+                    pieces.push(Piece {
+                        emitter: k,
+                        centre_m: lamp + DVec3::new(part(i, w), part(j, h), 0.0),
+                        size_m: [w / split as f64, h / split as f64],
+                    });
+                }
+            }
+        }
+        let sub = subpixels(theatre, view, &pieces);
+        let size = [view.size[0] * sub, view.size[1] * sub];
+        let mut plan = Self {
+            sub,
+            pieces,
+            lookups: Vec::new(),
+            planes: Vec::new(),
+            wide: vec![false; theatre.planes.len()],
+            channels: 1,
+            distance_m: theatre.planes.iter().map(|p| -p.centre_m.z).collect(),
+        };
+        for p in 0..theatre.planes.len() {
+            plan.add_plane(theatre, view, p, size);
+        }
+        Ok(plan)
+    }
+
+    fn add_plane(&mut self, theatre: &Theatre, view: &View, p: usize, size: [usize; 2]) {
+        let plane = &theatre.planes[p];
+        let grid = [plane.mask.width, plane.mask.height];
+        let first = self.lookups.len();
+        let max_code = f64::from(plane.mask.max_code());
+        let mut largest = 0f64;
+        for (i, piece) in self.pieces.iter().enumerate() {
+            let map = ShadowBox::new(plane, piece.centre_m);
+            let at = |i: usize, j: usize| map.centre(pixel_m(&theatre.screen, size, i as f64, j as f64));
+            let sides = map.spread * DVec2::from(piece.size_m);
+            let pixel = match view.pixel {
+                Pixel::Area => (at(1, 1) - at(0, 0)).abs(),
+                Pixel::Centre => DVec2::ZERO,
+            };
+            let x = Windows::new(size[0], |i| at(i, 0).x, sides.x, grid[0], pixel.x);
+            let y = Windows::new(size[1], |j| at(0, j).y, sides.y, grid[1], pixel.y);
+            largest = largest.max((sides.x + pixel.x + 2.0) * sides.y.max(1.0) * max_code);
+            self.lookups.push(Lookup {
+                plane: p,
+                piece: i,
+                x,
+                y,
+                shift: 32,
+                unit: sides.y.min(1.0),
+                norm: 0.0,
+            });
+        }
+        let off = self.lookups[first..].iter().all(|l| {
+            let ([x0, x1], [y0, y1]) = (l.x.touched(0..size[0], grid[0]), l.y.touched(0..size[1], grid[1]));
+            x0 == x1 || y0 == y1
+        });
+        if off {
+            self.lookups.truncate(first);
+            return;
+        }
+        // With u32 tables sums are known modulo 2³² only, so all 32 bits of fraction fit in 64 and the box must be under 2³².
+        self.wide[p] = largest >= 2f64.powi(32);
+        let bits = largest.log2().ceil() as u32 + 1;
+        for lookup in &mut self.lookups[first..] {
+            lookup.shift = if self.wide[p] { (64 - bits).min(32) } else { 32 };
+            let scale = 2f64.powi(lookup.shift as i32) / lookup.unit;
+            lookup.norm = 1.0 / (lookup.x.width * lookup.y.width * max_code * scale);
+        }
+        self.planes.push(p);
+        self.channels = self.channels.max(plane.mask.channels);
+    }
+}
+
+/// Sub-pixels an axis: 1 unless several planes meet in `area` pixels that are wider than a quarter of the narrowest box.
+fn subpixels(theatre: &Theatre, view: &View, pieces: &[Piece]) -> usize {
+    if theatre.planes.len() < 2 || view.pixel == Pixel::Centre {
+        return 1;
+    }
+    let pixel_m = theatre.screen.width_m / view.size[0] as f64;
+    let narrowest = theatre.planes.iter().flat_map(|plane| {
+        let ratio = plane.centre_m.z / theatre.lamp.position_m.z;
+        pieces
+            .iter()
+            .map(move |piece| piece.size_m[0].min(piece.size_m[1]) * ratio / ((1.0 - ratio) * pixel_m))
+    });
+    let narrowest = narrowest.fold(f64::INFINITY, f64::min);
+    ((4.0 / narrowest).ceil() as usize).clamp(1, 4)
+}
