@@ -210,8 +210,7 @@ mod tests {
             .all_attributes();
         let image = image.from_buffered(std::io::Cursor::new(bytes)).unwrap();
         let find = |name: &str| {
-            let channel =
-                image.layer_data.channel_data.list.iter().find(|c| c.name == Text::from(name)).unwrap();
+            let channel = image.layer_data.channel_data.list.iter().find(|c| c.name == *name).unwrap();
             channel.sample_data.values_as_f32().collect::<Vec<_>>()
         };
         assert_eq!(find("R"), frame().radiance[0]);

@@ -1,6 +1,6 @@
 //! The radiance that the display shows as white.
 
-use kelir_scene::{Exposure, Theatre};
+use kelir_scene::{Exposure, Scene, Theatre};
 use rayon::prelude::*;
 
 use crate::{View, albedo, irradiance::UnitRows};
@@ -37,4 +37,21 @@ pub fn white<'a>(theatres: impl IntoIterator<Item = &'a Theatre>, view: &View) -
         brightest = brightest.max((0..h).into_par_iter().map(row).reduce(|| 0.0, f64::max));
     }
     if brightest > 0.0 { brightest } else { 1.0 }
+}
+
+/// White for a scene: as written, or, for all frames of its timeline (`moving`), one value for the whole of it.
+pub fn of_scene(scene: &Scene, view: &View, moving: bool) -> f64 {
+    // Exposure does not see puppets: only the lamp's path matters, and each of its places once.
+    let still = Theatre { planes: Vec::new(), ..scene.still() };
+    let Some(timeline) = scene.timeline().filter(|_| moving) else { return white([&still], view) };
+    let mut theatres: Vec<Theatre> = Vec::new();
+    for frame in 0..timeline.frame_count() {
+        let position_m = scene.lamp_at(timeline.frame_time_s(frame));
+        if theatres.iter().all(|t| t.lamp.position_m != position_m) {
+            let mut theatre = still.clone();
+            theatre.lamp.position_m = position_m;
+            theatres.push(theatre);
+        }
+    }
+    white(&theatres, view)
 }

@@ -7,12 +7,15 @@
 
 pub mod albedo;
 pub mod ambient;
+pub mod camera;
 pub mod encode;
 pub mod exposure;
 pub mod file;
 pub mod frame;
 pub mod gpu;
 pub mod irradiance;
+pub mod job;
+pub mod penumbra;
 pub mod project;
 mod simd;
 pub mod techniques;

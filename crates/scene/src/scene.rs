@@ -76,6 +76,14 @@ impl Scene {
         self.timeline.as_ref()
     }
 
+    /// Where the lamp is at an instant of the timeline, metres; no puppet is posed for it.
+    pub fn lamp_at(&self, time_s: f64) -> glam::DVec3 {
+        match &self.timeline {
+            Some(timeline) => self.staging.at(timeline, timeline.instant_s(time_s)).lamp_m,
+            None => self.still.lamp.position_m,
+        }
+    }
+
     /// The scene at an instant of its timeline; as written when there is none. A puppet whose pose and rotation are as
     /// in a recent call keeps its mask (the same [`Arc`], the same [`Mask::id`]).
     pub fn theatre_at(&mut self, time_s: f64) -> Theatre {

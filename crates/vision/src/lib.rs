@@ -1,4 +1,5 @@
-//! Images measured: display-space second opinions on how different two images look.
+//! Images measured: errors in linear light, and display-space second opinions on how different two images look.
+pub mod errors;
 pub mod filter;
 pub mod flip;
 pub mod ssim;

@@ -132,7 +132,7 @@ impl Renderer for Oracle {
                 });
             }
         }
-        let stats = Stats { counts: [("pixels".into(), values.len() as u64)].into(), steps_ms: Vec::new() };
+        let stats = Stats { counts: [("pixels".into(), values.len() as u64)].into(), ..Stats::default() };
         Ok(Frame { size: view.size, radiance, layers, stats })
     }
 

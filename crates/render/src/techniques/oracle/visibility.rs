@@ -112,19 +112,24 @@ fn at(theatre: &Theatre, e: usize, p: DVec2) -> Visibility {
             let cell = EmitterShape::Rectangle { size_m: [x1 - x0, y1 - y0] };
             let centre = lamp + DVec3::new(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.0);
             let light = irradiance::unit(&cell, centre, p) / whole;
-            for c in 0..3 {
-                result.geometric[c] += tau[c] * area;
-                result.irradiance[c] += tau[c] * light;
+            for (c, tau) in tau.iter().enumerate() {
+                result.geometric[c] += tau * area;
+                result.irradiance[c] += tau * light;
             }
         }
     }
     result
 }
 
-/// ∫ max(t, 0) over t ± p/2, divided by p: the ramp that texel overlaps are made of, averaged over a pixel.
-fn mean_ramp(t: f64, p: f64) -> f64 {
-    let square = |t: f64| t.max(0.0).powi(2);
-    (square(t + 0.5 * p) - square(t - 0.5 * p)) / (2.0 * p)
+/// ∫ over [from, to] of |[t − h, t + h] ∩ [−p/2, p/2]| / p: a texel's overlap with a box of half-side `h`, averaged over a pixel of
+/// width `p`; everything relative to the box's mean centre. The integrand is a trapezoid; no term is the small difference
+/// of large ones.
+fn mean_overlap(from: f64, to: f64, h: f64, p: f64) -> f64 {
+    let (top, outer, inner) = ((2.0 * h).min(p), 0.5 * p + h, (0.5 * p - h).abs());
+    let height = |t: f64| ((outer - t.abs()) / top).clamp(0.0, 1.0) * top / p;
+    let mut ends = [from, to, -outer, -inner, inner, outer].map(|t| t.clamp(from, to));
+    ends.sort_by(f64::total_cmp);
+    ends.windows(2).map(|w| (w[1] - w[0]) * 0.5 * (height(w[0]) + height(w[1]))).sum()
 }
 
 /// Geometric visibility through one plane, averaged over a pixel of `sides`: overlaps of texels and box as ramps.
@@ -141,9 +146,7 @@ fn over_one_plane(theatre: &Theatre, e: usize, centre: DVec2, sides: DVec2) -> [
                 // Measured from the box's centre.
                 let from = (k as f64 * texel - 0.5 * plane.size_m[axis]) - flip * box_centre[axis];
                 let to = from + texel;
-                let ramp = |t: f64| mean_ramp(t, pixel[axis]);
-                let overlap = ramp(half[axis] - from) - ramp(half[axis] - to) - ramp(-half[axis] - from)
-                    + ramp(-half[axis] - to);
+                let overlap = mean_overlap(from, to, half[axis], pixel[axis]);
                 (overlap > 0.0).then_some((k, overlap / (2.0 * half[axis])))
             })
             .collect()

@@ -387,11 +387,10 @@ impl Job<'_> {
         counts
     }
 
-    /// Opacities of one look-up at the sub-pixels of `span` of sub-row `row`, into `scratch.opacity`.
+    /// Opacities of one look-up in one channel (entry `e`) at the sub-pixels of `span` of sub-row `row`, into `scratch.opacity`.
     fn opacity(
         &self,
-        l: usize,
-        c: usize,
+        e: usize,
         row: usize,
         span: &std::ops::Range<usize>,
         states: &[State],
@@ -399,8 +398,7 @@ impl Job<'_> {
         counts: &mut Counts,
     ) {
         let (sub, entries) = (self.plan.sub, self.tables.len());
-        let e = l * self.plan.channels + c;
-        let (lookup, table): (&Lookup, &Table) = (&self.plan.lookups[l], self.tables[e]);
+        let (lookup, table): (&Lookup, &Table) = (&self.plan.lookups[e / self.plan.channels], self.tables[e]);
         scratch.opacity.resize(span.len() * sub, 0.0);
         let mut x = span.start;
         while x < span.end {
@@ -456,7 +454,7 @@ impl Job<'_> {
                     scratch.product.clear();
                     scratch.product.resize(n * sub, 1.0);
                     for (l, lookup) in plan.lookups.iter().enumerate().filter(|(_, l)| l.piece == p) {
-                        self.opacity(l, c, row, &span, states, scratch, counts);
+                        self.opacity(l * channels + c, row, &span, states, scratch, counts);
                         scratch.product.iter_mut().zip(&scratch.opacity).for_each(|(v, o)| *v *= 1.0 - o);
                         if paper {
                             self.add_own(lookup.plane, piece.emitter, c, j, &span, scratch);

@@ -24,8 +24,8 @@ impl Combined {
         let stride = table.width + 1;
         let out = &mut self.sums[margin + from..=margin + to];
         match &table.sums {
-            Sums::U32(sums) => combine_into(sums, stride, from, interior, lookup.shift, &self.strips, out),
-            Sums::U64(sums) => combine_into(sums, stride, from, interior, lookup.shift, &self.strips, out),
+            Sums::U32(sums) => combine_u32(sums, stride, from, interior, lookup.shift, &self.strips, out),
+            Sums::U64(sums) => combine_u64(sums, stride, from, interior, lookup.shift, &self.strips, out),
         }
         if from == 0 {
             self.sums[..margin].fill(0);
@@ -122,30 +122,6 @@ multiversion! {
 }
 multiversion! {
     fn combine_u64(sums: &[u64], stride: usize, from: usize, interior: Option<[usize; 2]>, shift: u32, strips: &[(usize, u32)], out: &mut [u64]) = combine_generic;
-}
-
-trait Combine: Sum {
-    const COMBINE: fn(&[Self], usize, usize, Option<[usize; 2]>, u32, &[(usize, u32)], &mut [u64]);
-}
-impl Combine for u32 {
-    const COMBINE: fn(&[Self], usize, usize, Option<[usize; 2]>, u32, &[(usize, u32)], &mut [u64]) =
-        combine_u32;
-}
-impl Combine for u64 {
-    const COMBINE: fn(&[Self], usize, usize, Option<[usize; 2]>, u32, &[(usize, u32)], &mut [u64]) =
-        combine_u64;
-}
-
-fn combine_into<S: Combine>(
-    sums: &[S],
-    stride: usize,
-    from: usize,
-    interior: Option<[usize; 2]>,
-    shift: u32,
-    strips: &[(usize, u32)],
-    out: &mut [u64],
-) {
-    S::COMBINE(sums, stride, from, interior, shift, strips, out);
 }
 
 #[inline(always)]

@@ -93,6 +93,18 @@ impl Windows {
         [from, to.max(from)]
     }
 
+    /// Texels, inside the grid of `size`, of which window `i` holds more than nothing.
+    pub fn strictly_touched(&self, i: usize, size: usize) -> [usize; 2] {
+        let [mut from, mut to] = self.touched(i..i + 1, size);
+        while from < to && self.overlap(i, from as i64) <= 0.0 {
+            from += 1;
+        }
+        while from < to && self.overlap(i, to as i64 - 1) <= 0.0 {
+            to -= 1;
+        }
+        [from, to]
+    }
+
     /// Whether windows `range` lie wholly on the grid.
     pub fn inside(&self, range: std::ops::Range<usize>, size: usize) -> bool {
         self.start[range.start] >= 0
@@ -108,5 +120,39 @@ impl Windows {
             _ => 0.0,
         };
         (before(self.stop[i], &self.stop_before) - before(self.start[i], &self.start_before)).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Overlaps against midpoints over the pixel: Σ is the box's width, each texel its share.
+    #[test]
+    fn overlaps_are_those_of_a_box_slid_over_the_pixel() {
+        for (width, pixel) in [(0.3, 0.0), (0.3, 1.7), (5.2, 0.0), (5.2, 1.7), (2.0, 4.4), (1e-4, 0.9)] {
+            let centre = |i: usize| 3.37 + 0.61 * i as f64;
+            let windows = Windows::new(12, centre, width, 20, pixel);
+            for i in 0..12 {
+                let mut sum = 0.0;
+                for t in -10..30 {
+                    let got = windows.overlap(i, t);
+                    sum += got;
+                    let n = if pixel > 0.0 { 20_000 } else { 1 };
+                    let shifted = |k: usize| centre(i) + ((k as f64 + 0.5) / n as f64 - 0.5) * pixel;
+                    let overlap = |c: f64| {
+                        ((c + 0.5 * width).min((t + 1) as f64) - (c - 0.5 * width).max(t as f64)).max(0.0)
+                    };
+                    let expected = (0..n).map(|k| overlap(shifted(k))).sum::<f64>() / n as f64;
+                    if (0..20).contains(&t) {
+                        assert!(
+                            (got - expected).abs() < 1e-3 * width.max(1e-3),
+                            "{width} {pixel} {i} {t}: {got} {expected}"
+                        );
+                    }
+                }
+                assert!((sum / width - 1.0).abs() < 1e-9 || !windows.inside(i..i + 1, 20), "{sum}");
+            }
+        }
     }
 }

@@ -1,0 +1,153 @@
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+
+use kelir_scene::Assets;
+
+use super::*;
+use crate::{mc, oracle, pa};
+
+struct Files(BTreeMap<String, Vec<u8>>);
+
+impl Assets for Files {
+    fn read(&self, path: &str) -> std::io::Result<Vec<u8>> {
+        self.0
+            .get(path)
+            .cloned()
+            .ok_or_else(|| std::io::Error::new(std::io::ErrorKind::NotFound, path.to_owned()))
+    }
+}
+
+const FIGURE: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 60" width="40" height="60">
+<path d="M5 5 H35 L30 55 H10 Z M15 15 H25 V25 H15 Z" fill-rule="evenodd" fill="#000"/></svg>"##;
+
+fn job(timeline: &str, technique: Technique, output: Output) -> Job {
+    let toml = format!(
+        r#"
+[screen]
+width_m = 1.6
+height_m = 0.9
+albedo = [0.8, 0.7, 0.5]
+[lamp]
+position_m = [0.0, 0.0, -1.5]
+[[lamp.emitters]]
+name = "inner"
+shape = "rectangle"
+size_m = [0.02, 0.02]
+radiance = 2000.0
+[[lamp.emitters]]
+name = "outer"
+shape = "rectangle"
+size_m = [0.1, 0.1]
+radiance = 40.0
+[ambient]
+model = "none"
+[[puppets]]
+image = "figure.svg"
+height_m = 0.5
+position_m = [0.0, 0.0, -0.3]
+texels = 128
+{timeline}
+"#
+    );
+    let files = Files([("figure.svg".to_owned(), FIGURE.as_bytes().to_vec())].into());
+    Job {
+        scene: Scene::parse("scene.toml", &toml, &files).unwrap(),
+        technique,
+        view: View { size: [96, 54], pixel: Pixel::Area, skip: true },
+        backend: Backend::Cpu,
+        camera: None,
+        output,
+        reference: None,
+    }
+}
+
+fn pa() -> Technique {
+    Technique::Pa(pa::Knobs::default())
+}
+
+const SLIDE: &str = r#"
+[timeline]
+fps = 10
+seconds = 0.6
+loop = true
+[[timeline.tracks]]
+target = "puppets[0].position_m"
+keys = [ { t = 0.0, value = [0.0, 0.0, -0.3] }, { t = 0.2, value = [0.2, 0.0, -0.3] }, { t = 0.6, value = [0.2, 0.0, -0.3] } ]
+"#;
+
+#[test]
+fn the_same_job_gives_the_same_bytes_and_says_where_they_came_from() {
+    let mut steps = Vec::new();
+    let mut first = job("", pa(), Output::Still);
+    first.reference = Some(Technique::Oracle(oracle::Knobs { geometric: true, ..Default::default() }));
+    let one = run(&mut first, &mut |p| steps.push((p.done, p.total))).unwrap();
+    let two = run(&mut job("", pa(), Output::Still), &mut |_| ()).unwrap();
+    assert_eq!((one.media_type.as_str(), &one.bytes[1..4]), ("image/png", &b"PNG"[..]));
+    assert_eq!((&one.bytes, &one.sha256), (&two.bytes, &two.sha256));
+    assert_eq!(one.sha256, hex(&Sha256::digest(&one.bytes)));
+    assert_eq!(steps.last(), Some(&(3, 3)));
+    assert!(steps.windows(2).all(|w| w[0].0 < w[1].0));
+    let json = serde_json::to_value(&one.provenance).unwrap();
+    assert_eq!(json["technique"], "pa");
+    assert_eq!(json["scene_sha256"], first.scene.sha256());
+    assert_eq!(json["error"]["reference"]["technique"], "oracle");
+    // PA draws E⁰ · Vgeo: against the oracle's the error is rounding. The floor is unknown: no random numbers.
+    let max = json["error"]["all"]["max"].as_f64().unwrap();
+    assert!(max > 0.0 && max < 1e-6, "{max}");
+    assert_eq!(json["error"]["floor"], serde_json::Value::Null);
+    // Another technique is another image.
+    let mc = Technique::Mc(mc::Knobs { spp: 16, ..mc::Knobs::default() });
+    let mut other = job("", mc, Output::Still);
+    other.reference = Some(Technique::Mc(mc::Knobs { spp: 64, seed: 9 }));
+    let other = run(&mut other, &mut |_| ()).unwrap();
+    assert_ne!(other.sha256, one.sha256);
+    assert_eq!(other.provenance.white, one.provenance.white, "exposure does not depend on the technique");
+    let error = other.provenance.error.unwrap();
+    assert!(error.floor.unwrap() > 0.0 && error.penumbra.rmse > error.all.rmse);
+}
+
+#[test]
+fn an_animation_is_a_manifest_and_its_frames_equal_ones_shared() {
+    let stimulus = run(&mut job(SLIDE, pa(), Output::Animation), &mut |_| ()).unwrap();
+    assert_eq!(stimulus.media_type, ANIMATION);
+    let manifest: serde_json::Value = serde_json::from_slice(&stimulus.bytes).unwrap();
+    assert_eq!((&manifest["fps"], &manifest["loop"]), (&serde_json::json!(10.0), &serde_json::json!(true)));
+    assert_eq!((&manifest["width"], &manifest["height"]), (&serde_json::json!(96), &serde_json::json!(54)));
+    let frames: Vec<&str> =
+        manifest["frames"].as_array().unwrap().iter().map(|f| f.as_str().unwrap()).collect();
+    assert_eq!(frames.len(), 6);
+    assert_eq!(stimulus.attachments.len(), 3, "the puppet stops after a third of the time");
+    assert_eq!(frames[2], frames[5]);
+    assert_eq!(stimulus.provenance.counts["frames_repeated"], 3);
+    assert!(
+        stimulus
+            .attachments
+            .iter()
+            .all(|b| b.media_type == "image/png" && frames.contains(&b.sha256.as_str()))
+    );
+    let again = run(&mut job(SLIDE, pa(), Output::Animation), &mut |_| ()).unwrap();
+    assert_eq!(stimulus.bytes, again.bytes);
+}
+
+#[test]
+fn a_simulated_photograph() {
+    let mut with = job("", pa(), Output::Still);
+    with.camera = Some(Camera::default());
+    let photo = run(&mut with, &mut |_| ()).unwrap();
+    assert_eq!(photo.media_type, "image/jpeg");
+    let json = serde_json::to_value(&photo.provenance).unwrap();
+    assert_eq!(json["camera"]["jpeg_quality"], 90);
+}
+
+#[test]
+fn impossible_jobs_are_refused_by_name() {
+    let error = run(&mut job("", pa(), Output::Animation), &mut |_| ()).unwrap_err().to_string();
+    assert!(error.contains("timeline"), "{error}");
+    let mut wrong = job("", pa(), Output::Still);
+    wrong.view.size = [96, 96];
+    assert!(run(&mut wrong, &mut |_| ()).unwrap_err().to_string().contains("96x96"));
+    let mut camera = job("", pa(), Output::Still);
+    camera.camera = Some(Camera { noise: -1.0, ..Camera::default() });
+    assert!(run(&mut camera, &mut |_| ()).unwrap_err().to_string().contains("camera.noise"));
+}
