@@ -36,6 +36,34 @@ pub enum Appended {
     NoSuchTrial,
 }
 
+/// An answer as analyses read it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnswerRow {
+    /// Session's id.
+    pub session_id: String,
+    /// 0-based place in the session.
+    pub trial_index: u32,
+    /// Block's id.
+    pub block_id: String,
+    /// Pair's id.
+    pub pair_id: String,
+    /// Condition on the left.
+    pub left_condition: String,
+    /// Condition on the right.
+    pub right_condition: String,
+    /// Whether the left picture was chosen.
+    pub chose_left: bool,
+    /// Response time in ms.
+    pub rt_ms: f64,
+}
+
+impl AnswerRow {
+    /// The condition chosen.
+    pub fn chosen_condition(&self) -> &str {
+        if self.chose_left { &self.left_condition } else { &self.right_condition }
+    }
+}
+
 /// An answer as stored.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ResponseRow {
@@ -152,6 +180,33 @@ impl Store {
             .await?;
         tx.commit().await?;
         Ok(Appended::Stored)
+    }
+
+    /// What analyses need of all answers to a study's version: those of one session together, in trial order.
+    pub async fn answers(&self, study_id: &str, config_hash: &str) -> Result<Vec<AnswerRow>, StoreError> {
+        let rows = sqlx::query(
+            "SELECT r.session_id, r.trial_index, r.block_id, r.pair_id, r.left_condition, r.right_condition,
+             r.choice = 'left' AS chose_left, r.rt_ms FROM sessions s JOIN responses r USING (session_id)
+             WHERE s.study_id = $1 AND s.config_hash = $2 ORDER BY r.session_id, r.trial_index",
+        )
+        .bind(study_id)
+        .bind(config_hash)
+        .fetch_all(&self.reader)
+        .await?;
+        rows.iter()
+            .map(|row| {
+                Ok(AnswerRow {
+                    session_id: row.try_get(0)?,
+                    trial_index: row.try_get(1)?,
+                    block_id: row.try_get(2)?,
+                    pair_id: row.try_get(3)?,
+                    left_condition: row.try_get(4)?,
+                    right_condition: row.try_get(5)?,
+                    chose_left: row.try_get(6)?,
+                    rt_ms: row.try_get(7)?,
+                })
+            })
+            .collect()
     }
 
     /// All answers to a study's version, in the order they came, each with its payload (absent once blanked).

@@ -57,7 +57,7 @@ pub struct BlockSummary {
     pub note: Option<String>,
 }
 
-/// Summaries of every block in study order. Answers to blocks, pairs or conditions that the study does not have are left
+/// Summaries of every block but catch blocks, in study order. Answers to blocks, pairs or conditions that the study does not have are left
 /// out; of several answers of one participant to one pair the first counts.
 pub fn summarise<'a>(
     study: &StudyDefinition,
@@ -82,6 +82,7 @@ pub fn summarise<'a>(
         .blocks
         .iter()
         .zip(&seen)
+        .filter(|(block, _)| !block.catch)
         .map(|(block, participants)| {
             let pairs = block.pairs.len();
             let mut counts: BTreeMap<u32, u64> = (0..=pairs as u32).map(|k| (k, 0)).collect();

@@ -33,7 +33,8 @@ pub struct StudyDefinition {
     /// Blocks in the order they are shown.
     pub blocks: Vec<Block>,
     /// Rules of exclusion, stated before there are results.
-    #[serde(default)]
+    // New optional keys are left out of the JSON at their default: adding one must not change older studies' hashes.
+    #[serde(default, skip_serializing_if = "is_default")]
     pub screening: Screening,
 }
 
@@ -96,6 +97,9 @@ pub struct Block {
     pub target: String,
     /// The pairs, in file order.
     pub pairs: Vec<Pair>,
+    /// Whether the target is the right answer that attention alone is needed for; such a block screens and is not analysed.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub catch: bool,
 }
 
 /// What is shown.
@@ -124,8 +128,16 @@ pub struct Screening {
     pub min_rt_ms: Option<f64>,
     /// More too-fast trials than this exclude the participant.
     pub max_fast_trials: u32,
-    /// Choosing the same side in every trial excludes the participant.
+    /// More wrong answers in catch blocks than this exclude the participant; absent: none does.
+    pub max_failed_catch_trials: Option<u32>,
+    /// Whether choosing the same side in every one of at least five trials excludes the participant.
     pub straight_lining: bool,
+    /// Whether not finishing excludes the participant.
+    pub incomplete: bool,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl StudyDefinition {

@@ -113,12 +113,17 @@ fn read_screening(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Sc
     let mut fields = Fields::of(gatherer, "screening".to_owned(), value)?;
     let min_rt_ms = fields.get("min_rt_ms", "milliseconds from 0 to 60000", |v| number(v, 0.0, 60_000.0));
     let max_fast_trials = fields.get("max_fast_trials", "a count from 0 to 10000", |v| integer(v, 0, 10_000));
+    let max_failed_catch_trials =
+        fields.get("max_failed_catch_trials", "a count from 0 to 10000", |v| integer(v, 0, 10_000));
+    let incomplete = fields.get("incomplete", "true or false", Value::as_bool);
     let straight_lining = fields.get("straight_lining", "true or false", Value::as_bool);
     fields.finish();
     Some(Screening {
         min_rt_ms,
         max_fast_trials: u32::try_from(max_fast_trials.unwrap_or(0)).ok()?,
+        max_failed_catch_trials: max_failed_catch_trials.and_then(|n| u32::try_from(n).ok()),
         straight_lining: straight_lining.unwrap_or(false),
+        incomplete: incomplete.unwrap_or(false),
     })
 }
 
@@ -184,6 +189,7 @@ fn read_blocks(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Vec<Block> {
             let target = v.as_str()?;
             conditions.as_ref().is_none_or(|c| c.iter().any(|name| name == target)).then(|| target.to_owned())
         });
+        let catch = fields.get("catch", "true or false", Value::as_bool).unwrap_or(false);
         let mut pairs = Vec::new();
         for mut fields in fields.tables("pairs") {
             let id = read_id(&mut fields, &mut pair_ids);
@@ -198,7 +204,7 @@ fn read_blocks(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Vec<Block> {
         if let (Some(id), Some(title), Some(kind), Some(conditions), Some(target)) =
             (id, title, kind, conditions, target)
         {
-            blocks.push(Block { id, title, kind, conditions, target, pairs });
+            blocks.push(Block { id, title, kind, conditions, target, pairs, catch });
         }
     }
     let trials: usize = blocks.iter().map(|b| b.pairs.len()).sum();

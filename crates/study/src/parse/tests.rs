@@ -143,3 +143,10 @@ fn hostile_text_is_refused_without_a_panic() {
     }
     assert!(StudyDefinition::parse("Bad Name.toml", GOOD).is_err());
 }
+
+#[test]
+fn a_studys_hash_never_changes_with_kelir() {
+    // Data are found by this hash: a new optional key must leave it as it was.
+    let study = StudyDefinition::parse("two.toml", GOOD).unwrap();
+    assert_eq!(study.config_hash(), "718a7d0d3d8e40a5dfff3fce11489583c603083b0f1668f3707ecabbab92e14b");
+}

@@ -37,6 +37,7 @@ fn study(seed: u64, pairs: &[usize]) -> StudyDefinition {
                 conditions: ["pa".to_owned(), "mc".to_owned()],
                 target: "pa".to_owned(),
                 pairs: (0..*n).map(|p| Pair { id: format!("b{b}-p{p}"), scene: None }).collect(),
+                catch: false,
             })
             .collect(),
         screening: Default::default(),

@@ -1,0 +1,163 @@
+//! Who is left out: the rules of the study file, applied the same way each time.
+
+use crate::definition::StudyDefinition;
+use serde::Serialize;
+
+/// One answer, as far as screening looks at it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen<'a> {
+    /// Block's id.
+    pub block_id: &'a str,
+    /// The condition chosen.
+    pub chosen_condition: &'a str,
+    /// Whether the left picture was chosen.
+    pub chose_left: bool,
+    /// Response time in ms.
+    pub rt_ms: f64,
+}
+
+/// Why a participant is left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "reason", rename_all = "snake_case")]
+pub enum Exclusion {
+    /// Too many answers faster than `min_rt_ms`.
+    TooFast {
+        /// How many there were.
+        trials: u32,
+        /// How many there may be.
+        allowed: u32,
+    },
+    /// Too many wrong answers in catch blocks.
+    FailedCatchTrials {
+        /// How many there were.
+        trials: u32,
+        /// How many there may be.
+        allowed: u32,
+    },
+    /// The same side in every trial.
+    StraightLining {
+        /// How many trials there were.
+        trials: u32,
+    },
+    /// The study was not finished.
+    Incomplete {
+        /// How many trials were answered.
+        answered: u32,
+        /// How many there are.
+        trials: u32,
+    },
+}
+
+/// Fewest trials in which always choosing one side says anything: by chance it happens once in 2⁴ times then.
+const STRAIGHT: usize = 5;
+
+/// Every reason of the study's rules to leave a participant with these answers out; none: they stay.
+pub fn screen(study: &StudyDefinition, answers: &[Seen<'_>]) -> Vec<Exclusion> {
+    let rules = &study.screening;
+    let count = |is: &dyn Fn(&Seen<'_>) -> bool| answers.iter().filter(|a| is(a)).count() as u32;
+    let mut reasons = Vec::new();
+    if let Some(least) = rules.min_rt_ms {
+        let (trials, allowed) = (count(&|a| a.rt_ms < least), rules.max_fast_trials);
+        if trials > allowed {
+            reasons.push(Exclusion::TooFast { trials, allowed });
+        }
+    }
+    if let Some(allowed) = rules.max_failed_catch_trials {
+        let failed =
+            |a: &Seen<'_>| study.block(a.block_id).is_some_and(|b| b.catch && b.target != a.chosen_condition);
+        let trials = count(&failed);
+        if trials > allowed {
+            reasons.push(Exclusion::FailedCatchTrials { trials, allowed });
+        }
+    }
+    if rules.straight_lining && answers.len() >= STRAIGHT {
+        let lefts = count(&|a| a.chose_left) as usize;
+        if lefts == 0 || lefts == answers.len() {
+            reasons.push(Exclusion::StraightLining { trials: answers.len() as u32 });
+        }
+    }
+    if rules.incomplete && answers.len() < study.trial_count() {
+        let (answered, trials) = (answers.len() as u32, study.trial_count() as u32);
+        reasons.push(Exclusion::Incomplete { answered, trials });
+    }
+    reasons
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    fn study(screening: &str) -> StudyDefinition {
+        let block = |id: &str, catch: &str| {
+            let pairs: Vec<String> =
+                (0..3).map(|i| format!("{{ id = \"{id}{i}\", scene = \"a.toml\" }}")).collect();
+            format!(
+                "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\n\
+                 pairs = [{}]\n{catch}\n",
+                pairs.join(", ")
+            )
+        };
+        let text = format!(
+            "title = \"t\"\nquestion = \"q\"\nseed = 1\nsize = [64, 36]\nestimated_minutes = 1\n\
+             texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
+             conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }} }}\n\
+             screening = {{ {screening} }}\n{}{}",
+            block("main", ""),
+            block("easy", "catch = true")
+        );
+        StudyDefinition::parse("s.toml", &text).unwrap()
+    }
+
+    /// Six answers: side and time of each; the last three are of the catch block, with the condition chosen.
+    fn answers(sides: [bool; 6], rt_ms: [f64; 6], catch: [&'static str; 3]) -> Vec<Seen<'static>> {
+        (0..6)
+            .map(|i| Seen {
+                block_id: if i < 3 { "main" } else { "easy" },
+                chosen_condition: if i < 3 { "mc" } else { catch[i - 3] },
+                chose_left: sides[i],
+                rt_ms: rt_ms[i],
+            })
+            .collect()
+    }
+
+    const MIXED: [bool; 6] = [true, false, true, true, false, true];
+
+    #[test]
+    fn each_rule_excludes_beyond_its_limit_and_not_at_it() {
+        let fast = study("min_rt_ms = 200, max_fast_trials = 1");
+        let once = answers(MIXED, [100.0, 200.0, 900.0, 900.0, 900.0, 900.0], ["pa"; 3]);
+        assert!(screen(&fast, &once).is_empty(), "200 ms is not faster than 200 ms, and one is allowed");
+        let twice = answers(MIXED, [100.0, 199.9, 900.0, 900.0, 900.0, 900.0], ["pa"; 3]);
+        assert_eq!(screen(&fast, &twice), [Exclusion::TooFast { trials: 2, allowed: 1 }]);
+
+        let catch = study("max_failed_catch_trials = 1");
+        let slow = [900.0; 6];
+        assert!(screen(&catch, &answers(MIXED, slow, ["pa", "mc", "pa"])).is_empty());
+        let failed = screen(&catch, &answers(MIXED, slow, ["mc", "mc", "pa"]));
+        assert_eq!(failed, [Exclusion::FailedCatchTrials { trials: 2, allowed: 1 }]);
+
+        let straight = study("straight_lining = true");
+        assert!(screen(&straight, &answers(MIXED, slow, ["pa"; 3])).is_empty());
+        for side in [true, false] {
+            let same = answers([side; 6], slow, ["pa"; 3]);
+            assert_eq!(screen(&straight, &same), [Exclusion::StraightLining { trials: 6 }]);
+            assert!(screen(&straight, &same[..4]).is_empty(), "four of a kind say nothing");
+        }
+
+        let incomplete = study("incomplete = true");
+        assert!(screen(&incomplete, &answers(MIXED, slow, ["pa"; 3])).is_empty());
+        let five = &answers(MIXED, slow, ["pa"; 3])[..5];
+        assert_eq!(screen(&incomplete, five), [Exclusion::Incomplete { answered: 5, trials: 6 }]);
+    }
+
+    #[test]
+    fn without_rules_nobody_is_left_out_and_with_all_every_reason_is_given() {
+        let bad = answers([true; 6], [1.0; 6], ["mc"; 3]);
+        assert!(screen(&study(""), &bad).is_empty());
+        let all =
+            study("min_rt_ms = 200, max_failed_catch_trials = 0, straight_lining = true, incomplete = true");
+        assert_eq!(screen(&all, &bad[..5]).len(), 4);
+    }
+}
