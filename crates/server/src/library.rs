@@ -5,9 +5,10 @@ use crate::render;
 use kelir_scene::{Assets, Scene};
 use kelir_study::{Condition, Kind, Problem, StudyDefinition, StudyErrors};
 use rust_embed::RustEmbed;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeSet, HashMap};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 #[derive(RustEmbed)]
 #[folder = "$CARGO_MANIFEST_DIR/../../stimuli"]
@@ -18,12 +19,23 @@ struct BuiltIn;
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
+    /// What was learnt of scenes that were read: reading one rasterises its puppets, which takes a while.
+    known: Arc<Mutex<HashMap<String, SceneFacts>>>,
+}
+
+/// What a study needs to know of a scene.
+#[derive(Clone, Debug)]
+pub(crate) struct SceneFacts {
+    /// Hash over its values and files.
+    pub(crate) sha256: String,
+    /// Whether it has a timeline.
+    pub(crate) moves: bool,
 }
 
 impl Library {
     /// The library of a data folder.
     pub fn new(folder: &Path) -> Library {
-        Library { folder: folder.to_owned() }
+        Library { folder: folder.to_owned(), known: Arc::default() }
     }
 
     /// The bytes at a '/'-separated path below the library's root; `..` may not leave it.
@@ -108,27 +120,41 @@ impl Library {
                 }
             }
         }
-        let mut scenes: BTreeMap<String, Option<bool>> = BTreeMap::new();
-        let mut wrong = Vec::new();
+        let (mut wrong, mut refused) = (Vec::new(), BTreeSet::new());
         for (i, block) in study.blocks.iter().enumerate() {
             for (j, pair) in block.pairs.iter().enumerate() {
                 let Some(named) = &pair.scene else { continue };
                 let field = format!("blocks[{i}].pairs[{j}].scene");
                 let path = beside(file, named);
-                let moves = *scenes.entry(path.clone()).or_insert_with(|| match self.scene(&path) {
-                    Ok(scene) => Some(scene.timeline().is_some()),
+                let moves = match self.scene_facts(&path) {
+                    Ok(facts) => facts.moves,
                     Err(found) => {
-                        wrong.extend(found);
-                        None
+                        // Its problems are told once, however many pairs show it.
+                        if refused.insert(path) {
+                            wrong.extend(found);
+                        }
+                        continue;
                     }
-                });
-                if moves == Some(false) && block.kind == Kind::Animation {
+                };
+                if !moves && block.kind == Kind::Animation {
                     problem(field, Some(named), "has no [timeline]; the block shows animations".to_owned());
                 }
             }
         }
         problems.extend(wrong);
         problems
+    }
+
+    /// What there is to know of the scene at a path of the library, as it was when it was first read.
+    pub(crate) fn scene_facts(&self, path: &str) -> Result<SceneFacts, Vec<Problem>> {
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(facts) = known().get(path) {
+            return Ok(facts.clone());
+        }
+        let scene = self.scene(path)?;
+        let facts = SceneFacts { sha256: scene.sha256().to_owned(), moves: scene.timeline().is_some() };
+        known().insert(path.to_owned(), facts.clone());
+        Ok(facts)
     }
 
     /// Reads and checks the scene at a path of the library.

@@ -5,8 +5,7 @@ use crate::making::{Made, Maker, Task};
 use kelir_render::camera::Camera;
 use kelir_render::job::{Job, Output, run};
 use kelir_render::{Backend, Pixel, Technique, View};
-use kelir_scene::Scene;
-use kelir_study::{Condition, Kind};
+use kelir_study::{Condition, Kind, Problem};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -34,15 +33,16 @@ pub(crate) fn camera(settings: &BTreeMap<String, Value>) -> Result<Camera, Strin
 impl Maker for RenderMaker {
     /// All that decides the bytes but for the machine: what was made on one is as good on another.
     fn identity(&self, task: &Task<'_>, library: &Library) -> Result<String, String> {
-        let job = self.job(task, library)?;
+        let plan = Plan::of(task)?;
+        let facts = library.scene_facts(&plan.scene).map_err(lines)?;
         let identity = json!({
             "kelir": env!("CARGO_PKG_VERSION"),
-            "scene": job.scene.sha256(),
-            "technique": job.technique,
-            "view": job.view,
-            "camera": job.camera,
-            "output": job.output,
-            "reference": job.reference,
+            "scene": facts.sha256,
+            "technique": plan.technique,
+            "view": plan.view,
+            "camera": plan.camera,
+            "output": plan.output,
+            "reference": plan.reference,
         });
         Ok(identity.to_string())
     }
@@ -53,7 +53,9 @@ impl Maker for RenderMaker {
         library: &Library,
         progress: &mut dyn FnMut(f64, &str),
     ) -> Result<Made, String> {
-        let mut job = self.job(task, library)?;
+        let Plan { scene, technique, view, camera, output, reference } = Plan::of(task)?;
+        let scene = library.scene(&scene).map_err(lines)?;
+        let mut job = Job { scene, technique, view, backend: self.backend, camera, output, reference };
         let stimulus = run(&mut job, &mut |step| {
             progress(step.done as f64 / step.total.max(1) as f64, step.what);
         })
@@ -70,19 +72,28 @@ impl Maker for RenderMaker {
     }
 }
 
-impl RenderMaker {
-    fn job(&self, task: &Task<'_>, library: &Library) -> Result<Job, String> {
+/// A job before its scene is read.
+struct Plan {
+    scene: String,
+    technique: Technique,
+    view: View,
+    camera: Option<Camera>,
+    output: Output,
+    reference: Option<Technique>,
+}
+
+impl Plan {
+    fn of(task: &Task<'_>) -> Result<Plan, String> {
         let Condition::Rendered { technique: name, knobs, camera: settings } = task.condition else {
             return Err("is a picture file and is not drawn".to_owned());
         };
         let technique = technique(name, knobs)?;
         let [width, height] = task.study.size;
-        Ok(Job {
-            scene: scene(task, library)?,
+        Ok(Plan {
+            scene: task.scene_file().ok_or("has no scene")?,
             reference: reference(task, &technique),
             technique,
             view: View { size: [width as usize, height as usize], pixel: Pixel::Area, skip: true },
-            backend: self.backend,
             camera: settings.as_ref().map(camera).transpose()?,
             output: match task.block.kind {
                 Kind::Still => Output::Still,
@@ -92,12 +103,8 @@ impl RenderMaker {
     }
 }
 
-fn scene(task: &Task<'_>, library: &Library) -> Result<Scene, String> {
-    let path = task.scene_file().ok_or("has no scene")?;
-    library.scene(&path).map_err(|problems| {
-        let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
-        lines.join("; ")
-    })
+fn lines(problems: Vec<Problem>) -> String {
+    problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
 
 /// What a stimulus is measured against: the study's own Monte-Carlo condition, the one with the most samples; Monte-Carlo
@@ -107,7 +114,9 @@ fn reference(task: &Task<'_>, technique: &Technique) -> Option<Technique> {
         return None;
     }
     let conditions = task.study.conditions.values().filter_map(|condition| match condition {
-        Condition::Rendered { technique: name, knobs, .. } if name == "mc" => self::technique(name, knobs).ok(),
+        Condition::Rendered { technique: name, knobs, .. } if name == "mc" => {
+            self::technique(name, knobs).ok()
+        }
         _ => None,
     });
     let spp = |technique: &Technique| if let Technique::Mc(knobs) = technique { knobs.spp } else { 0 };
