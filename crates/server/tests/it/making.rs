@@ -1,6 +1,6 @@
 use crate::client::{Client, config};
 use crate::placeholder::Placeholder;
-use kelir_server::{Library, Made, Maker, Server, StartError, Task};
+use kelir_server::{Library, Made, Maker, RenderMaker, Server, StartError, Task};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -132,4 +132,64 @@ async fn a_wrong_study_stops_the_start_with_every_problem() {
         assert!(text.contains(expected), "{expected} in {text}");
     }
     assert!(!folder.path().join("kelir.sqlite").exists(), "nothing was written");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_renderer_makes_what_the_study_asks_for() {
+    let folder = crate::client::folder();
+    let camera = "[conditions.photo]\ntechnique = \"mc\"\ncamera = { noise = 0.02, seed = 5 }\n[[blocks]]\nid = \"photos\"\n\
+        title = \"p\"\nkind = \"still\"\nconditions = [\"photo\", \"pa\"]\ntarget = \"pa\"\n\
+        pairs = [{ id = \"d\", scene = \"../scenes/near.toml\" }]\n";
+    let study = format!("{}{camera}", crate::client::STUDY);
+    std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
+    let server = Server::open(&config(folder.path(), Arc::new(RenderMaker::default()))).await.unwrap();
+    server.make_stimuli(&|_| {}).await.unwrap();
+    let version = server.store().study_versions("shadow-puppets").await.unwrap().remove(0);
+    let made = server.store().study_stimuli("shadow-puppets", &version.config_hash).await.unwrap();
+    assert_eq!(made.len(), 8);
+    let of = |pair: &str, condition: &str| {
+        made.iter()
+            .find(|s| s.pair == pair && s.condition == condition)
+            .unwrap_or_else(|| panic!("{pair} {condition}"))
+    };
+    // PA is measured against the study's MC: one plane, so the two differ by the model error and MC's noise alone.
+    let error = &of("a", "pa").provenance["error"];
+    let rmse = error["all"]["rmse"].as_f64().unwrap();
+    assert!(rmse > 0.0 && rmse < 0.02, "{error}");
+    assert!(of("a", "mc").provenance["error"].is_null());
+    assert_eq!(of("a", "mc").provenance["technique"], "mc");
+    assert_eq!(of("d", "photo").provenance["camera"]["seed"], 5);
+    let types = [
+        ("a", "pa", "image/png"),
+        ("c", "mc", "application/vnd.kelir.animation+json"),
+        ("d", "photo", "image/jpeg"),
+    ];
+    for (pair, condition, media_type) in types {
+        let (info, bytes) = server.store().stimulus(&of(pair, condition).sha256).await.unwrap().unwrap();
+        assert_eq!(info.media_type, media_type);
+        // Nothing in the bytes says how they were made.
+        for word in ["kelir", "technique", "tEXt", "Monte"] {
+            assert!(
+                !bytes.windows(word.len()).any(|w| w == word.as_bytes()),
+                "{word} in {pair} ({condition})"
+            );
+        }
+    }
+    // Pair a and pair d show the same scene by the same technique: it was drawn once.
+    assert_eq!(of("a", "pa").sha256, of("d", "pa").sha256);
+    assert_ne!(of("a", "pa").sha256, of("a", "mc").sha256);
+}
+
+#[test]
+fn the_built_in_study_is_good() {
+    let library = Library::new(std::path::Path::new("/nonexistent"));
+    assert!(library.study_files().contains(&"studies/shadow-puppets.toml".to_owned()));
+    let study = library.study("studies/shadow-puppets.toml").unwrap_or_else(|errors| panic!("{errors}"));
+    let pairs: Vec<usize> = study.blocks.iter().map(|b| b.pairs.len()).collect();
+    assert_eq!(pairs, [2, 2, 1]);
+    assert_eq!(study.question, "Which image is more likely to be real?");
+    assert!(study.blocks.iter().all(|b| b.target == "pa"));
+    assert!(study.blocks[1].conditions.contains(&"simulated-photo".to_owned()));
+    let told = study.texts.debriefing.join(" ");
+    assert!(told.contains("simulated photograph"));
 }

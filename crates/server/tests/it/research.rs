@@ -164,3 +164,44 @@ async fn a_leaked_database_holds_no_secret() {
         assert!(!holds(secret));
     }
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_screened_are_left_out_named_and_shown_apart() {
+    let folder = crate::client::folder();
+    let rules = "[screening]\nmin_rt_ms = 300\nincomplete = true\n[texts]";
+    let study = crate::client::STUDY.replace("[texts]", rules);
+    std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
+    let drawer = std::sync::Arc::<crate::placeholder::Placeholder>::default();
+    let server = Server::open(&config(folder.path(), drawer.clone())).await.unwrap();
+    let client = Client { server, folder, drawer };
+    client.server.make_stimuli(&|_| {}).await.unwrap();
+    let cookie = client.sign_in().await;
+    let results =
+        async || client.research(&cookie, "/api/v1/admin/studies/shadow-puppets/results").await.json();
+
+    client.take(json!({}), ["left", "right", "left"]).await;
+    let before = results().await;
+    assert!(before["excluded"].as_array().unwrap().is_empty() && before["blocks_with_excluded"].is_null());
+
+    // One is too fast once, the other stops after the first block.
+    for (rts, choices) in [([900.0, 299.0, 900.0], 3), ([900.0, 900.0, 900.0], 2)] {
+        let (path, token, _) = client.join(json!({})).await;
+        for (trial, rt) in rts.iter().enumerate().take(choices) {
+            let mut body = crate::client::body_of("left");
+            body["rt"] = json!(rt);
+            let answer = client.call("PUT", &format!("{path}/trials/{trial}"), &token, &body).await;
+            assert_eq!(answer.status, StatusCode::OK);
+        }
+    }
+    let after = results().await;
+    let reasons: Vec<&str> = after["excluded"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|e| e["reasons"][0]["reason"].as_str().unwrap())
+        .collect();
+    assert_eq!(reasons, ["too_fast", "incomplete"]);
+    assert_eq!(after["blocks"], before["blocks"]);
+    assert_eq!(after["blocks_with_excluded"][0]["n"], 3);
+    assert_eq!(after["blocks_with_excluded"][1]["n"], 2);
+}
