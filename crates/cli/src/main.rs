@@ -1,6 +1,7 @@
 //! The one binary of kelir. Exit codes: 0 done, 1 something failed, 2 the input is wrong and nothing was written.
 
 mod commands;
+mod output;
 mod progress;
 
 use std::process::ExitCode;

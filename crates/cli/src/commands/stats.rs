@@ -1,0 +1,120 @@
+//! `kelir stats STUDY` and `kelir stats ttest`.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::{Subcommand, ValueEnum};
+use kelir_server::results::{self, StudyResults};
+use kelir_stats::{TTest, t_test_from_counts};
+use serde::Serialize;
+
+use crate::output::{csv, print, table};
+use crate::{BadInput, bad_input};
+
+/// Arguments of `kelir stats`.
+#[derive(clap::Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct Args {
+    #[command(subcommand)]
+    test: Option<Test>,
+    /// Id of the study, as in its address.
+    #[arg(required = true)]
+    study: Option<String>,
+    /// The server's data folder; it may be running.
+    #[arg(long, default_value = "data")]
+    data: PathBuf,
+    #[arg(long, value_enum, default_value = "table")]
+    format: Format,
+}
+
+/// A test of numbers given on the command line.
+#[derive(Subcommand)]
+enum Test {
+    /// Two-sided one-sample t-test of a table of counts.
+    Ttest {
+        /// VALUE:HOW-OFTEN pairs, as in 0:12,1:14,2:6.
+        #[arg(long, value_parser = parse_counts)]
+        counts: Counts,
+        /// The mean under the null hypothesis.
+        #[arg(long)]
+        mu: f64,
+        #[arg(long, value_enum, default_value = "table")]
+        format: Format,
+    },
+}
+
+/// How results are printed.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Format {
+    /// Aligned columns.
+    Table,
+    /// One JSON document, full precision.
+    Json,
+    /// Comma-separated, full precision, one header line.
+    Csv,
+}
+
+#[derive(Clone)]
+struct Counts(Vec<(f64, u64)>);
+
+/// Runs the command.
+pub fn run(args: Args) -> Result<()> {
+    match (args.test, args.study) {
+        (Some(Test::Ttest { counts, mu, format }), _) => {
+            let test = t_test_from_counts(&counts.0, mu).map_err(bad_input)?;
+            print_test(&test, format)
+        }
+        (None, Some(study)) => {
+            let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+            let results = runtime.block_on(results::of_study(&args.data, &study)).map_err(results_error)?;
+            print_study(&results, args.format)
+        }
+        (None, None) => unreachable!("clap asks for a study or a test"),
+    }
+}
+
+fn print_test(test: &TTest, format: Format) -> Result<()> {
+    match format {
+        Format::Json => print(&serde_json::to_string_pretty(test)?),
+        Format::Csv => print(&csv(
+            &["n", "mean", "sd", "mu", "t", "df", "p"],
+            &[vec![
+                test.n.to_string(),
+                test.mean.to_string(),
+                test.sd.to_string(),
+                test.mu.to_string(),
+                test.t.to_string(),
+                test.df.to_string(),
+                test.p.to_string(),
+            ]],
+        )),
+        Format::Table => print(&table(
+            &["n", "mean", "sd", "mu", "t", "df", "p (two-sided)"],
+            &[vec![
+                test.n.to_string(),
+                format!("{:.4}", test.mean),
+                format!("{:.4}", test.sd),
+                test.mu.to_string(),
+                format!("{:.4}", test.t),
+                test.df.to_string(),
+                p_value(test.p),
+            ]],
+        )),
+    }
+}
+
+/// Three significant digits, the way a paper prints them.
+fn p_value(p: f64) -> String {
+    if p >= 0.001 { format!("{p:.4}") } else { format!("{p:.3e}") }
+}
+
+fn parse_counts(text: &str) -> Result<Counts, String> {
+    let pair = |item: &str| -> Option<(f64, u64)> {
+        let (value, count) = item.split_once(':')?;
+        Some((value.trim().parse().ok()?, count.trim().parse().ok()?))
+    };
+    let counts = text.split(',').map(|item| {
+        pair(item).ok_or_else(|| format!("{item:?} is no VALUE:HOW-OFTEN pair, as in 0:12,1:14,2:6"))
+    });
+    counts.collect::<Result<_, _>>().map(Counts)
+}

@@ -1,0 +1,63 @@
+//! What goes to standard output.
+
+use std::io::Write;
+
+use anyhow::Result;
+
+/// Prints a document and a final newline; a closed pipe (`kelir … | head`) is no failure.
+pub fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{}", text.trim_end()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        other => Ok(other?),
+    }
+}
+
+/// Columns aligned: words to the left, numbers to the right.
+pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.chain([header[column].chars().count()]).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..header.len()).map(width).collect();
+    let numeric = |column: usize| {
+        rows.iter().all(|row| row[column].parse::<f64>().is_ok() || matches!(row[column].as_str(), "–" | ""))
+    };
+    let numbers: Vec<bool> = (0..header.len()).map(numeric).collect();
+    let line = |cells: &[String]| {
+        let padded = cells.iter().zip(&widths).zip(&numbers).map(|((cell, width), number)| {
+            if *number { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+        });
+        padded.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    let head: Vec<String> = header.iter().map(|title| (*title).to_owned()).collect();
+    let lines: Vec<String> = std::iter::once(line(&head)).chain(rows.iter().map(|row| line(row))).collect();
+    lines.join("\n")
+}
+
+/// RFC 4180: quoted where needed.
+pub fn csv(header: &[&str], rows: &[Vec<String>]) -> String {
+    let quote = |cell: &str| {
+        let plain = !cell.contains([',', '"', '\n', '\r']);
+        if plain { cell.to_owned() } else { format!("\"{}\"", cell.replace('"', "\"\"")) }
+    };
+    let head: Vec<String> = header.iter().map(|title| (*title).to_owned()).collect();
+    let lines = std::iter::once(&head).chain(rows).map(|row| row.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(","));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_align_right_and_words_left() {
+        let rows = [vec!["a".to_owned(), "1.5".to_owned()], vec!["bcd".to_owned(), "–".to_owned()]];
+        assert_eq!(table(&["name", "t"], &rows), "name    t\na     1.5\nbcd     –");
+    }
+
+    #[test]
+    fn csv_quotes_what_needs_it() {
+        assert_eq!(csv(&["a"], &[vec!["x,\"y\"".to_owned()]]), "a\n\"x,\"\"y\"\"\"");
+    }
+}
