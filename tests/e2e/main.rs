@@ -1,4 +1,6 @@
 //! End to end: the real binary, a real browser, a real database.
 #![allow(clippy::unwrap_used)]
 
+mod cli;
 mod invariants;
+mod survey;

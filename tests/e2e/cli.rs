@@ -1,0 +1,155 @@
+//! The binary's manners: what a wrong input gets, and the numbers it prints.
+
+use std::path::Path;
+
+use kelir_tests::{kelir, kelir_ok, root};
+
+/// Runs a command that must refuse its input: exit code 2, every phrase in the message, nothing on standard output.
+fn refused(args: &[&str], phrases: &[&str]) {
+    let out = kelir(args);
+    let message = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(2), "{args:?}: {message}");
+    assert!(out.stdout.is_empty(), "{args:?} printed {}", String::from_utf8_lossy(&out.stdout));
+    for phrase in phrases {
+        assert!(message.contains(phrase), "{args:?} does not say {phrase:?}:\n{message}");
+    }
+    assert!(!message.contains("panicked"), "{message}");
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+const SCENE: &str = r#"
+[screen]
+width_m = 1.6
+height_m = 0.9
+albedo = 0.8
+[lamp]
+position_m = [0.0, 0.0, -1.5]
+[[lamp.emitters]]
+name = "inner"
+shape = "rectangle"
+size_m = [0.02, 0.02]
+radiance = 2000.0
+[ambient]
+model = "none"
+[[puppets]]
+image = "dot.png"
+height_m = 0.3
+position_m = [0.0, 0.0, -0.2]
+[exposure]
+white = "auto"
+"#;
+
+/// A small scene with a PNG puppet: an opaque square in a clear frame.
+fn scene(folder: &Path, edit: impl Fn(&str) -> String) -> String {
+    let mut dot = image::RgbaImage::new(8, 8);
+    for (x, y, pixel) in dot.enumerate_pixels_mut() {
+        pixel.0 = if (2..6).contains(&x) && (2..6).contains(&y) { [0, 0, 0, 255] } else { [0; 4] };
+    }
+    dot.save(folder.join("dot.png")).unwrap();
+    write(folder, "scene.toml", &edit(SCENE))
+}
+
+#[test]
+fn ttest_prints_the_papers_numbers() {
+    let first = kelir_ok(&["stats", "ttest", "--counts", "0:12,1:14,2:6", "--mu", "1"]);
+    for number in ["0.8125", "0.7378", "-1.4376"] {
+        assert!(first.contains(number), "{first}");
+    }
+    let second = kelir_ok(&["stats", "ttest", "--counts", "0:3,1:10,2:19", "--mu", "1"]);
+    assert!(second.contains("4.2088"), "{second}");
+    let json = kelir_ok(&["stats", "ttest", "--counts", "0:26,1:7", "--mu", "0.5", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    // t = (7/33 − 1/2)/(s/√33), worked out by hand: s² = 7·26/(33·32).
+    let s = (7.0_f64 * 26.0 / (33.0 * 32.0)).sqrt();
+    let t = (7.0 / 33.0 - 0.5) / (s / 33.0_f64.sqrt());
+    assert!((json["t"].as_f64().unwrap() - t).abs() < 1e-12, "{json}");
+}
+
+#[test]
+fn wrong_numbers_are_refused() {
+    refused(&["stats", "ttest", "--counts", "0:1", "--mu", "1"], &["counts"]);
+    refused(&["stats", "ttest", "--counts", "0:12,x", "--mu", "1"], &["\"x\"", "VALUE:HOW-OFTEN"]);
+    refused(&["stats", "ttest", "--counts", "0:12,1:3", "--mu", "nan"], &["mu"]);
+    refused(&["stats", "shadow-puppets", "--data", "/nonexistent/kelir"], &["/nonexistent/kelir"]);
+}
+
+#[test]
+fn a_wrong_scene_names_every_problem_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.png");
+    let path = scene(folder.path(), |good| {
+        good.replace("-0.2]", "0.3]").replace("radiance = 2000.0", "radiance = nan\nbrightness = 3").replace("width_m = 1.6", "width_m = 0")
+    });
+    let phrases = ["scene.toml", "puppets[0].position_m[2] = 0.3", "screen.width_m", "lamp.emitters[0].radiance", "brightness"];
+    refused(&["render", &path, "--technique", "pa", "-o", out.to_str().unwrap()], &phrases);
+    refused(&["scene", "check", &path], &phrases);
+    assert!(!out.exists());
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left.len(), 2, "nothing is left behind: {left:?}");
+}
+
+#[test]
+fn what_a_technique_cannot_draw_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.png");
+    let good = scene(folder.path(), str::to_owned);
+    refused(&["render", &good, "--technique", "pa", "--size", "100x100", "-o", out.to_str().unwrap()], &["100", "aspect"]);
+    refused(&["render", &good, "--technique", "pa", "--size", "wide", "-o", out.to_str().unwrap()], &["WIDTHxHEIGHT"]);
+    refused(&["render", &good, "--technique", "pa", "-o", folder.path().join("out.tiff").to_str().unwrap()], &["out.tiff", ".png", ".exr"]);
+    refused(&["animate", &good, "--technique", "pa", "-o", folder.path().join("frames").to_str().unwrap()], &["timeline"]);
+    assert!(!out.exists());
+}
+
+#[test]
+fn hostile_images_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene(folder.path(), str::to_owned);
+    std::fs::write(folder.path().join("dot.png"), b"\x89PNG\r\n\x1a\nnot really").unwrap();
+    refused(&["scene", "check", &path], &["puppets[0].image", "dot.png"]);
+    // A header that promises 60000 × 60000 pixels and holds nothing.
+    let mut bomb = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec();
+    bomb.extend([0, 0, 0xea, 0x60, 0, 0, 0xea, 0x60, 8, 6, 0, 0, 0, 0, 0, 0, 0]);
+    std::fs::write(folder.path().join("dot.png"), bomb).unwrap();
+    refused(&["scene", "check", &path], &["puppets[0].image", "dot.png"]);
+    let missing = scene(folder.path(), |good| good.replace("dot.png", "../../etc/passwd"));
+    refused(&["scene", "check", &missing], &["puppets[0].image"]);
+}
+
+#[test]
+fn a_wrong_study_names_every_problem() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = std::fs::read_to_string(root().join("stimuli/studies/shadow-puppets.toml")).unwrap();
+    let wrong = good.replace("size = [592, 333]", "size = [592, 0]").replacen("kind = \"still\"", "kind = \"painting\"", 1);
+    assert_ne!(good, wrong, "the study has what the test breaks");
+    let path = write(folder.path(), "study.toml", &wrong);
+    refused(&["study", "check", &path], &["study.toml", "size", "painting"]);
+    kelir_ok(&["study", "check", "stimuli/studies/shadow-puppets.toml"]);
+}
+
+#[test]
+fn the_shipped_scenes_are_good() {
+    let mut scenes: Vec<_> = std::fs::read_dir(root().join("stimuli/scenes")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    scenes.sort();
+    assert!(scenes.len() >= 7, "two scenes of each of three puppets, and the benchmark");
+    let args: Vec<&str> = ["scene", "check"].into_iter().chain(scenes.iter().map(|path| path.to_str().unwrap())).collect();
+    kelir_ok(&args);
+}
+
+#[test]
+fn compose_file_is_valid_where_a_client_can_tell() {
+    // Docker's compose client validates without an engine; machines without it have nothing to ask.
+    for client in [&["docker", "compose"][..], &["docker-compose"]] {
+        let known = std::process::Command::new(client[0]).args(&client[1..]).arg("version").output();
+        if known.is_ok_and(|out| out.status.success()) {
+            let out = std::process::Command::new(client[0]).args(&client[1..]).args(["config", "-q"]).current_dir(root()).output().unwrap();
+            assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+            return;
+        }
+    }
+    eprintln!("no compose client here: docker-compose.yml is not validated");
+}
