@@ -22,7 +22,7 @@ pub struct Drawing {
     pub spp: u32,
     /// Seed of the sample points (mc): same seed and count, same bytes.
     #[arg(long, default_value_t = 1)]
-    pub seed: u32,
+    pub seed: u64,
     /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 1920 wide.
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[usize; 2]>,

@@ -1,6 +1,7 @@
 //! One module a command.
 
 pub mod animate;
+mod drawing;
 pub mod render;
 pub mod scene;
 pub mod serve;

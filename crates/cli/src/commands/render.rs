@@ -1,0 +1,130 @@
+//! `kelir render`: one image of a scene.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::Result;
+use kelir_render::encode::{self, Attributes};
+use kelir_render::{Frame, Stats, file, renderer, white};
+use serde::Serialize;
+
+use super::drawing::{Drawing, StatsFormat, render_error};
+use crate::bad_input;
+use crate::output::print;
+
+/// Arguments of `kelir render`.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    drawing: Drawing,
+    /// Instant of the timeline, in seconds; by default the scene as written, its timeline not applied.
+    #[arg(long)]
+    time: Option<f64>,
+    /// Image to write: .png (display-encoded sRGB) or .exr (linear radiance, visibilities, standard errors).
+    #[arg(short, long)]
+    output: PathBuf,
+}
+
+enum Container {
+    Png,
+    Exr,
+}
+
+/// Runs the command.
+pub fn run(args: Args) -> Result<()> {
+    let container = match args.output.extension().and_then(|end| end.to_str()) {
+        Some("png") => Container::Png,
+        Some("exr") => Container::Exr,
+        _ => return Err(bad_input(format!("output = {}: the name ends in .png or .exr", args.output.display()))),
+    };
+    let mut scene = args.drawing.load()?;
+    let scene_sha256 = scene.sha256().to_owned();
+    let theatre = match args.time {
+        Some(time_s) if time_s.is_finite() => scene.theatre_at(time_s),
+        Some(time_s) => return Err(bad_input(format!("time = {time_s}: a number of seconds"))),
+        None => scene.still(),
+    };
+    let view = args.drawing.view(&theatre);
+    let technique = args.drawing.technique();
+    let mut renderer = renderer(&technique, args.drawing.backend).map_err(render_error)?;
+
+    let begun = Instant::now();
+    // The same exposure for a still and for every frame of the scene's timeline.
+    let white = match scene.timeline().map(|timeline| (0..timeline.frame_count()).map(|i| timeline.frame_time_s(i)).collect()) {
+        Some(times) => {
+            let times: Vec<f64> = times;
+            let frames: Vec<_> = times.into_iter().map(|time_s| scene.theatre_at(time_s)).collect();
+            white(frames.iter().chain([&theatre]), &view)
+        }
+        None => white([&theatre], &view),
+    };
+    let frame = renderer.radiance(&theatre, &view).map_err(render_error)?;
+    let bytes = match container {
+        Container::Png => encode::png(&encode::display(&frame, white), frame.size),
+        Container::Exr => {
+            let attributes = Attributes { white, technique: serde_json::to_string(&technique)?, scene_sha256: scene_sha256.clone() };
+            encode::exr(&frame, &attributes)
+        }
+    }
+    .map_err(render_error)?;
+    file::write_atomic(&args.output, &bytes)?;
+
+    let standard_error = StandardError::of(&frame, white);
+    if let Some(error) = &standard_error {
+        eprintln!(
+            "standard error of a pixel, in units of white: mean {:.2e} where sampled, at most {:.2e}",
+            error.mean_sampled, error.max
+        );
+    }
+    if let Some(StatsFormat::Json) = args.drawing.stats {
+        let report = Report {
+            technique: technique.name(),
+            adapter: renderer.adapter(),
+            size: frame.size,
+            white,
+            scene_sha256,
+            total_ms: begun.elapsed().as_secs_f64() * 1e3,
+            stats: &frame.stats,
+            standard_error,
+        };
+        print(&serde_json::to_string_pretty(&report)?)?;
+    }
+    Ok(())
+}
+
+/// What `--stats json` prints.
+#[derive(Serialize)]
+struct Report<'a> {
+    technique: &'a str,
+    adapter: String,
+    size: [usize; 2],
+    white: f64,
+    scene_sha256: String,
+    total_ms: f64,
+    stats: &'a Stats,
+    standard_error: Option<StandardError>,
+}
+
+/// Monte Carlo's own standard error, in units of white.
+#[derive(Serialize)]
+struct StandardError {
+    /// Mean over the pixels and channels that were sampled (elsewhere it is exactly 0).
+    mean_sampled: f64,
+    /// The largest.
+    max: f64,
+    /// Share of the pixels that were sampled.
+    sampled_share: f64,
+}
+
+impl StandardError {
+    fn of(frame: &Frame, white: f64) -> Option<Self> {
+        let layers: Vec<_> = frame.layers.iter().filter(|layer| layer.name.starts_with("SE.")).collect();
+        if layers.is_empty() {
+            return None;
+        }
+        let values = || layers.iter().flat_map(|layer| &layer.values).map(|value| f64::from(*value) / white);
+        let (sampled, sum) = values().filter(|value| *value > 0.0).fold((0_u64, 0.0), |(n, sum), value| (n + 1, sum + value));
+        let all = values().count().max(1) as f64;
+        Some(Self { mean_sampled: sum / sampled.max(1) as f64, max: values().fold(0.0, f64::max), sampled_share: sampled as f64 / all })
+    }
+}
