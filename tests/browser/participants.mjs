@@ -54,7 +54,8 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
       await shot("thanks");
       code = (await page.getByTestId("completion-code").textContent()).trim();
     } else {
-      await shot(state.replace("-agree", ""));
+      const names = { "consent-agree": "consent", start: "instructions", continue: trials.length ? "debriefing" : "welcome" };
+      await shot(names[state]);
       const button = page.getByTestId(state);
       await press(button);
       await button.waitFor({ state: "detached" });
@@ -66,7 +67,7 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
 
 /** The test hook of the screen that is shown now. */
 async function current(page) {
-  const hooks = ["welcome-next", "consent-agree", "start", "choice-left", "debriefing-next", "completion-code"];
+  const hooks = ["continue", "consent-agree", "start", "choice-left", "completion-code"];
   const shown = page.locator(hooks.map((hook) => `[data-testid="${hook}"]:visible`).join(","));
   await shown.first().waitFor({ timeout: 60_000 });
   return shown.first().getAttribute("data-testid");
