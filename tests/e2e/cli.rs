@@ -83,13 +83,22 @@ fn a_wrong_scene_names_every_problem_and_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out.png");
     let path = scene(folder.path(), |good| {
-        good.replace("-0.2]", "0.3]").replace("radiance = 2000.0", "radiance = nan\nbrightness = 3").replace("width_m = 1.6", "width_m = 0")
+        good.replace("-0.2]", "0.3]")
+            .replace("radiance = 2000.0", "radiance = nan\nbrightness = 3")
+            .replace("width_m = 1.6", "width_m = 0")
     });
-    let phrases = ["scene.toml", "puppets[0].position_m[2] = 0.3", "screen.width_m", "lamp.emitters[0].radiance", "brightness"];
+    let phrases = [
+        "scene.toml",
+        "puppets[0].position_m[2] = 0.3",
+        "screen.width_m",
+        "lamp.emitters[0].radiance",
+        "brightness",
+    ];
     refused(&["render", &path, "--technique", "pa", "-o", out.to_str().unwrap()], &phrases);
     refused(&["scene", "check", &path], &phrases);
     assert!(!out.exists());
-    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let left: Vec<_> =
+        std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left.len(), 2, "nothing is left behind: {left:?}");
 }
 
@@ -98,10 +107,22 @@ fn what_a_technique_cannot_draw_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out.png");
     let good = scene(folder.path(), str::to_owned);
-    refused(&["render", &good, "--technique", "pa", "--size", "100x100", "-o", out.to_str().unwrap()], &["100", "aspect"]);
-    refused(&["render", &good, "--technique", "pa", "--size", "wide", "-o", out.to_str().unwrap()], &["WIDTHxHEIGHT"]);
-    refused(&["render", &good, "--technique", "pa", "-o", folder.path().join("out.tiff").to_str().unwrap()], &["out.tiff", ".png", ".exr"]);
-    refused(&["animate", &good, "--technique", "pa", "-o", folder.path().join("frames").to_str().unwrap()], &["timeline"]);
+    refused(
+        &["render", &good, "--technique", "pa", "--size", "100x100", "-o", out.to_str().unwrap()],
+        &["100", "aspect"],
+    );
+    refused(
+        &["render", &good, "--technique", "pa", "--size", "wide", "-o", out.to_str().unwrap()],
+        &["WIDTHxHEIGHT"],
+    );
+    refused(
+        &["render", &good, "--technique", "pa", "-o", folder.path().join("out.tiff").to_str().unwrap()],
+        &["out.tiff", ".png", ".exr"],
+    );
+    refused(
+        &["animate", &good, "--technique", "pa", "-o", folder.path().join("frames").to_str().unwrap()],
+        &["timeline"],
+    );
     assert!(!out.exists());
 }
 
@@ -124,7 +145,11 @@ fn hostile_images_are_refused() {
 fn a_wrong_study_names_every_problem() {
     let folder = tempfile::tempdir().unwrap();
     let good = std::fs::read_to_string(root().join("stimuli/studies/shadow-puppets.toml")).unwrap();
-    let wrong = good.replace("size = [592, 333]", "size = [592, 0]").replacen("kind = \"still\"", "kind = \"painting\"", 1);
+    let wrong = good.replace("size = [592, 333]", "size = [592, 0]").replacen(
+        "kind = \"still\"",
+        "kind = \"painting\"",
+        1,
+    );
     assert_ne!(good, wrong, "the study has what the test breaks");
     let path = write(folder.path(), "study.toml", &wrong);
     refused(&["study", "check", &path], &["study.toml", "size", "painting"]);
@@ -133,10 +158,14 @@ fn a_wrong_study_names_every_problem() {
 
 #[test]
 fn the_shipped_scenes_are_good() {
-    let mut scenes: Vec<_> = std::fs::read_dir(root().join("stimuli/scenes")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut scenes: Vec<_> = std::fs::read_dir(root().join("stimuli/scenes"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     scenes.sort();
     assert!(scenes.len() >= 7, "two scenes of each of three puppets, and the benchmark");
-    let args: Vec<&str> = ["scene", "check"].into_iter().chain(scenes.iter().map(|path| path.to_str().unwrap())).collect();
+    let args: Vec<&str> =
+        ["scene", "check"].into_iter().chain(scenes.iter().map(|path| path.to_str().unwrap())).collect();
     kelir_ok(&args);
 }
 
@@ -146,7 +175,12 @@ fn compose_file_is_valid_where_a_client_can_tell() {
     for client in [&["docker", "compose"][..], &["docker-compose"]] {
         let known = std::process::Command::new(client[0]).args(&client[1..]).arg("version").output();
         if known.is_ok_and(|out| out.status.success()) {
-            let out = std::process::Command::new(client[0]).args(&client[1..]).args(["config", "-q"]).current_dir(root()).output().unwrap();
+            let out = std::process::Command::new(client[0])
+                .args(&client[1..])
+                .args(["config", "-q"])
+                .current_dir(root())
+                .output()
+                .unwrap();
             assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
             return;
         }

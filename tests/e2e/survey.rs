@@ -57,14 +57,21 @@ fn three_participants_from_the_welcome_to_the_t_test() {
             assert!(row["rt_ms"].as_f64().unwrap() > 0.0);
         }
     }
-    assert!(rows.iter().any(|row| row["left_condition"] == "simulated-photo" || row["right_condition"] == "simulated-photo"));
+    assert!(
+        rows.iter()
+            .any(|row| row["left_condition"] == "simulated-photo"
+                || row["right_condition"] == "simulated-photo")
+    );
 
     // t per block, recomputed here from those rows.
     let expected: Vec<(String, f64)> = blocks(&rows)
         .into_iter()
         .map(|(block, pairs)| {
             let chosen = |chunk: &[Value]| {
-                chunk.iter().filter(|row| row["block_id"] == block.as_str() && row["chosen_condition"] == "pa").count() as f64
+                chunk
+                    .iter()
+                    .filter(|row| row["block_id"] == block.as_str() && row["chosen_condition"] == "pa")
+                    .count() as f64
             };
             let counts: Vec<f64> = rows.chunks(5).map(chosen).collect();
             (block, t_statistic(&counts, pairs as f64 / 2.0))
@@ -72,21 +79,38 @@ fn three_participants_from_the_welcome_to_the_t_test() {
         .collect();
     assert_eq!(expected.len(), 3);
 
-    let stats: Value = serde_json::from_str(&kelir_ok(&["stats", STUDY, "--data", data.path().to_str().unwrap(), "--format", "json"])).unwrap();
+    let stats: Value = serde_json::from_str(&kelir_ok(&[
+        "stats",
+        STUDY,
+        "--data",
+        data.path().to_str().unwrap(),
+        "--format",
+        "json",
+    ]))
+    .unwrap();
     let password = std::fs::read_to_string(data.path().join("researcher-password")).unwrap();
     let page = browser(
         "console.mjs",
         &json!({"base": server.base, "study": STUDY, "shots": shots, "password": password.trim()}),
     );
-    assert!(page["refused"].as_str().is_some_and(|text| !text.is_empty()), "a wrong password is refused in words");
+    assert!(
+        page["refused"].as_str().is_some_and(|text| !text.is_empty()),
+        "a wrong password is refused in words"
+    );
     assert_eq!(page["complaints"], json!([]));
     for (block, t) in &expected {
         let printed = stats["blocks"].as_array().unwrap().iter().find(|b| b["id"] == block.as_str()).unwrap();
         let shown = &page["blocks"][block];
         if t.is_finite() {
-            assert!((printed["t"].as_f64().unwrap() - t).abs() < 1e-12 * t.abs().max(1.0), "{block}: {printed} against {t}");
+            assert!(
+                (printed["t"].as_f64().unwrap() - t).abs() < 1e-12 * t.abs().max(1.0),
+                "{block}: {printed} against {t}"
+            );
             let shown: f64 = shown["t"].as_str().unwrap().parse().unwrap();
-            assert!((shown - t).abs() < 1e-12 * t.abs().max(1.0), "{block}: the page says {shown}, the rows {t}");
+            assert!(
+                (shown - t).abs() < 1e-12 * t.abs().max(1.0),
+                "{block}: the page says {shown}, the rows {t}"
+            );
         } else {
             // All three chose alike: t is not defined, and both places say so.
             assert!(printed["t"].is_null() && printed["note"].is_string(), "{printed}");
@@ -111,15 +135,24 @@ fn blocks(rows: &[Value]) -> Vec<(String, usize)> {
 
 fn database(data: &std::path::Path) -> std::path::PathBuf {
     let mut files = std::fs::read_dir(data).unwrap().map(|entry| entry.unwrap().path());
-    files.find(|path| path.extension().is_some_and(|end| end == "sqlite" || end == "db")).expect("a database file")
+    files
+        .find(|path| path.extension().is_some_and(|end| end == "sqlite" || end == "db"))
+        .expect("a database file")
 }
 
 /// Opens a session and consents; answers (id, token).
 fn join(server: &Server) -> (String, String) {
-    let (status, session) = server.call("POST", &format!("/api/v1/studies/{STUDY}/sessions"), None, &json!({"params": {}, "display": {}}));
+    let (status, session) = server.call(
+        "POST",
+        &format!("/api/v1/studies/{STUDY}/sessions"),
+        None,
+        &json!({"params": {}, "display": {}}),
+    );
     assert_eq!(status, 201, "{session}");
-    let (id, token) = (session["session_id"].as_str().unwrap().to_owned(), session["token"].as_str().unwrap().to_owned());
-    let (status, state) = server.call("POST", &format!("/api/v1/sessions/{id}/consent"), Some(&token), &Value::Null);
+    let (id, token) =
+        (session["session_id"].as_str().unwrap().to_owned(), session["token"].as_str().unwrap().to_owned());
+    let (status, state) =
+        server.call("POST", &format!("/api/v1/sessions/{id}/consent"), Some(&token), &Value::Null);
     assert_eq!(status, 200, "{state}");
     (id, token)
 }
@@ -146,10 +179,14 @@ fn a_killed_server_loses_nothing_that_it_acknowledged() {
         let next = if trial < 4 { json!(trial + 1) } else { Value::Null };
         assert_eq!(state["next_trial"], next, "{state}");
     }
-    let rows = sql(&database(data.path()), &format!("SELECT trial_index, choice FROM responses WHERE session_id = '{id}' ORDER BY trial_index"));
+    let rows = sql(
+        &database(data.path()),
+        &format!("SELECT trial_index, choice FROM responses WHERE session_id = '{id}' ORDER BY trial_index"),
+    );
     let choices: Vec<&str> = rows.iter().map(|row| row["choice"].as_str().unwrap()).collect();
     assert_eq!(choices, ["left", "right", "left", "right", "left"]);
-    let (status, done) = server.call("POST", &format!("/api/v1/sessions/{id}/complete"), Some(&token), &Value::Null);
+    let (status, done) =
+        server.call("POST", &format!("/api/v1/sessions/{id}/complete"), Some(&token), &Value::Null);
     assert_eq!(status, 200, "{done}");
     assert_eq!(sql(&database(data.path()), "PRAGMA integrity_check")[0]["integrity_check"], "ok");
 }
@@ -159,11 +196,16 @@ fn no_code_before_every_trial_is_stored_and_no_answer_changes() {
     let data = prepared_data();
     let server = Server::start(data.path(), true);
     let (id, token) = join(&server);
-    let (status, body) = server.call("POST", &format!("/api/v1/sessions/{id}/complete"), Some(&token), &Value::Null);
+    let (status, body) =
+        server.call("POST", &format!("/api/v1/sessions/{id}/complete"), Some(&token), &Value::Null);
     assert_eq!((status, &body["error"]["code"]), (409, &json!("incomplete")), "{body}");
     let path = format!("/api/v1/sessions/{id}/trials/0");
     assert_eq!(server.call("PUT", &path, Some(&token), &answer("left")).0, 200);
-    assert_eq!(server.call("PUT", &path, Some(&token), &answer("left")).0, 200, "the same answer again is acknowledged");
+    assert_eq!(
+        server.call("PUT", &path, Some(&token), &answer("left")).0,
+        200,
+        "the same answer again is acknowledged"
+    );
     let (status, body) = server.call("PUT", &path, Some(&token), &answer("right"));
     assert_eq!((status, &body["error"]["code"]), (409, &json!("already_answered")), "{body}");
     let rows = sql(&database(data.path()), "SELECT choice FROM responses");
@@ -177,14 +219,26 @@ fn no_code_before_every_trial_is_stored_and_no_answer_changes() {
         ("DELETE", "/api/v1/studies/shadow-puppets", None, Value::Null, 405),
     ] {
         let (status, answer) = server.call(method, path, token, &body);
-        assert!((400..500).contains(&status) && answer["error"]["code"].is_string() && answer["error"]["message"].is_string(), "{method} {path}: {status} {answer}");
+        assert!(
+            (400..500).contains(&status)
+                && answer["error"]["code"].is_string()
+                && answer["error"]["message"].is_string(),
+            "{method} {path}: {status} {answer}"
+        );
         if status != expected {
-            assert!([400, 401, 404, 405, 422].contains(&status), "{method} {path}: {status}, expected about {expected}");
+            assert!(
+                [400, 401, 404, 405, 422].contains(&status),
+                "{method} {path}: {status}, expected about {expected}"
+            );
         }
         let text = answer.to_string().to_lowercase();
         assert!(!text.contains("sqlx") && !text.contains("select ") && !text.contains("panicked"), "{text}");
     }
     // The database itself refuses to change an answer, whoever asks.
-    let out = std::process::Command::new("sqlite3").arg(database(data.path())).arg("UPDATE responses SET choice = 'right'").output().unwrap();
+    let out = std::process::Command::new("sqlite3")
+        .arg(database(data.path()))
+        .arg("UPDATE responses SET choice = 'right'")
+        .output()
+        .unwrap();
     assert!(!out.status.success() && String::from_utf8_lossy(&out.stderr).contains("append-only"), "{out:?}");
 }

@@ -42,7 +42,9 @@ pub fn csv(header: &[&str], rows: &[Vec<String>]) -> String {
         if plain { cell.to_owned() } else { format!("\"{}\"", cell.replace('"', "\"\"")) }
     };
     let head: Vec<String> = header.iter().map(|title| (*title).to_owned()).collect();
-    let lines = std::iter::once(&head).chain(rows).map(|row| row.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(","));
+    let lines = std::iter::once(&head)
+        .chain(rows)
+        .map(|row| row.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(","));
     lines.collect::<Vec<_>>().join("\n")
 }
 

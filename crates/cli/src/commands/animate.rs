@@ -43,7 +43,10 @@ pub fn run(args: Args) -> Result<()> {
     for (index, theatre) in theatres.iter().enumerate() {
         stats.push(renderer.display(theatre, &view, white, &mut pixels).map_err(render_error)?);
         let name = format!("frame-{index:04}.png");
-        file::write_atomic(&args.output.join(&name), &encode::png(&pixels, view.size).map_err(render_error)?)?;
+        file::write_atomic(
+            &args.output.join(&name),
+            &encode::png(&pixels, view.size).map_err(render_error)?,
+        )?;
         names.push(name);
         bar.inc(1);
     }
@@ -52,9 +55,16 @@ pub fn run(args: Args) -> Result<()> {
         "fps": fps, "loop": looped, "width": view.size[0], "height": view.size[1], "white": white, "frames": names,
     });
     // The manifest comes last: a folder that has one is whole.
-    file::write_atomic(&args.output.join("manifest.json"), serde_json::to_string_pretty(&manifest)?.as_bytes())?;
+    file::write_atomic(
+        &args.output.join("manifest.json"),
+        serde_json::to_string_pretty(&manifest)?.as_bytes(),
+    )?;
     if let Some(StatsFormat::Json) = args.drawing.stats {
-        let report = Report { adapter: renderer.adapter(), total_ms: begun.elapsed().as_secs_f64() * 1e3, frames: &stats };
+        let report = Report {
+            adapter: renderer.adapter(),
+            total_ms: begun.elapsed().as_secs_f64() * 1e3,
+            frames: &stats,
+        };
         print(&serde_json::to_string_pretty(&report)?)?;
     }
     Ok(())

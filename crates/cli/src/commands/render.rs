@@ -35,7 +35,12 @@ pub fn run(args: Args) -> Result<()> {
     let container = match args.output.extension().and_then(|end| end.to_str()) {
         Some("png") => Container::Png,
         Some("exr") => Container::Exr,
-        _ => return Err(bad_input(format!("output = {}: the name ends in .png or .exr", args.output.display()))),
+        _ => {
+            return Err(bad_input(format!(
+                "output = {}: the name ends in .png or .exr",
+                args.output.display()
+            )));
+        }
     };
     let mut scene = args.drawing.load()?;
     let scene_sha256 = scene.sha256().to_owned();
@@ -50,7 +55,10 @@ pub fn run(args: Args) -> Result<()> {
 
     let begun = Instant::now();
     // The same exposure for a still and for every frame of the scene's timeline.
-    let white = match scene.timeline().map(|timeline| (0..timeline.frame_count()).map(|i| timeline.frame_time_s(i)).collect()) {
+    let white = match scene
+        .timeline()
+        .map(|timeline| (0..timeline.frame_count()).map(|i| timeline.frame_time_s(i)).collect())
+    {
         Some(times) => {
             let times: Vec<f64> = times;
             let frames: Vec<_> = times.into_iter().map(|time_s| scene.theatre_at(time_s)).collect();
@@ -62,7 +70,11 @@ pub fn run(args: Args) -> Result<()> {
     let bytes = match container {
         Container::Png => encode::png(&encode::display(&frame, white), frame.size),
         Container::Exr => {
-            let attributes = Attributes { white, technique: serde_json::to_string(&technique)?, scene_sha256: scene_sha256.clone() };
+            let attributes = Attributes {
+                white,
+                technique: serde_json::to_string(&technique)?,
+                scene_sha256: scene_sha256.clone(),
+            };
             encode::exr(&frame, &attributes)
         }
     }
@@ -123,8 +135,13 @@ impl StandardError {
             return None;
         }
         let values = || layers.iter().flat_map(|layer| &layer.values).map(|value| f64::from(*value) / white);
-        let (sampled, sum) = values().filter(|value| *value > 0.0).fold((0_u64, 0.0), |(n, sum), value| (n + 1, sum + value));
+        let (sampled, sum) =
+            values().filter(|value| *value > 0.0).fold((0_u64, 0.0), |(n, sum), value| (n + 1, sum + value));
         let all = values().count().max(1) as f64;
-        Some(Self { mean_sampled: sum / sampled.max(1) as f64, max: values().fold(0.0, f64::max), sampled_share: sampled as f64 / all })
+        Some(Self {
+            mean_sampled: sum / sampled.max(1) as f64,
+            max: values().fold(0.0, f64::max),
+            sampled_share: sampled as f64 / all,
+        })
     }
 }

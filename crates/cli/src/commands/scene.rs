@@ -34,6 +34,7 @@ pub fn run(command: Command) -> Result<()> {
 
 fn describe(scene: &Scene) -> String {
     let theatre = scene.still();
-    let frames = scene.timeline().map_or_else(String::new, |timeline| format!(", {} frames", timeline.frame_count()));
+    let frames =
+        scene.timeline().map_or_else(String::new, |timeline| format!(", {} frames", timeline.frame_count()));
     format!("{} puppets, {} emitters{frames}", theatre.planes.len(), theatre.lamp.emitters.len())
 }

@@ -1,15 +1,15 @@
 //! `kelir stats STUDY` and `kelir stats ttest`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Subcommand, ValueEnum};
-use kelir_server::{Library, Results, Store, results};
-use kelir_study::analysis::BlockSummary;
+use kelir_server::results::{self, ResultsError, StudyResults};
 use kelir_stats::{TTest, t_test_from_counts};
+use kelir_study::analysis::BlockSummary;
 
-use crate::output::{csv, print, table};
 use crate::bad_input;
+use crate::output::{csv, print, table};
 
 /// Arguments of `kelir stats`.
 #[derive(clap::Args)]
@@ -66,58 +66,49 @@ pub fn run(args: Args) -> Result<()> {
         }
         (None, Some(study)) => {
             let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-            print_study(&runtime.block_on(study_results(&args.data, &study))?, args.format)
+            let results = runtime.block_on(results::of_study(&args.data, &study)).map_err(results_error)?;
+            print_study(&results, args.format)
         }
         (None, None) => unreachable!("clap asks for a study or a test"),
     }
 }
 
-/// Results of a study from a data folder; a server may have it open at the same time.
-async fn study_results(data: &Path, id: &str) -> Result<Results> {
-    if !data.join("kelir.sqlite").is_file() {
-        let rule = "a data folder of `kelir serve` has a kelir.sqlite; name the folder with --data";
-        return Err(bad_input(format!("{}: {rule}", data.display())));
+fn results_error(error: ResultsError) -> anyhow::Error {
+    match error {
+        ResultsError::Store(_) => error.into(),
+        _ => bad_input(error),
     }
-    let library = Library::new(data);
-    let file = format!("studies/{id}.toml");
-    let known = library.study_files();
-    if !known.contains(&file) {
-        let ids: Vec<&str> = known.iter().filter_map(|path| path.strip_prefix("studies/")?.strip_suffix(".toml")).collect();
-        return Err(bad_input(format!("{id:?} is no study of {}; there are: {}", data.display(), ids.join(", "))));
-    }
-    let study = library.study(&file).map_err(bad_input)?;
-    let store = Store::open(data).await?;
-    let results = results(&store, &study).await?;
-    store.close().await;
-    Ok(results)
 }
 
-fn print_study(results: &Results, format: Format) -> Result<()> {
-    let header = ["block", "conditions", "counted", "pairs", "n", "mean", "sd", "mu", "t", "df", "p (two-sided)"];
-    let rows = |number: &dyn Fn(Option<f64>) -> String, p: &dyn Fn(Option<f64>) -> String| -> Vec<Vec<String>> {
-        let row = |block: &BlockSummary| {
-            vec![
-                block.id.clone(),
-                block.conditions.join(" / "),
-                block.target.clone(),
-                block.pairs.to_string(),
-                block.n.to_string(),
-                number(block.mean),
-                number(block.sd),
-                block.mu.to_string(),
-                number(block.t),
-                block.df.map_or_else(String::new, |df| df.to_string()),
-                p(block.p),
-            ]
+fn print_study(results: &StudyResults, format: Format) -> Result<()> {
+    let header =
+        ["block", "conditions", "counted", "pairs", "n", "mean", "sd", "mu", "t", "df", "p (two-sided)"];
+    let rows =
+        |number: &dyn Fn(Option<f64>) -> String, p: &dyn Fn(Option<f64>) -> String| -> Vec<Vec<String>> {
+            let row = |block: &BlockSummary| {
+                vec![
+                    block.id.clone(),
+                    block.conditions.join(" / "),
+                    block.target.clone(),
+                    block.pairs.to_string(),
+                    block.n.to_string(),
+                    number(block.mean),
+                    number(block.sd),
+                    block.mu.to_string(),
+                    number(block.t),
+                    block.df.map_or_else(String::new, |df| df.to_string()),
+                    p(block.p),
+                ]
+            };
+            results.blocks.iter().map(row).collect()
         };
-        results.blocks.iter().map(row).collect()
-    };
     let exact = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     match format {
         Format::Json => print(&serde_json::to_string_pretty(results)?),
         Format::Csv => print(&csv(&header, &rows(&exact, &exact))),
         Format::Table => {
-            let rounded = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+            let rounded =
+                |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
             let p = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), p_value);
             print(&format!("{} ({})", results.title, results.study))?;
             let people = &results.participants;
@@ -126,7 +117,10 @@ fn print_study(results: &Results, format: Format) -> Result<()> {
                 people.started, people.in_progress, people.completed
             ))?;
             print(&table(&header, &rows(&rounded, &p)))?;
-            let notes = results.blocks.iter().filter_map(|block| Some(format!("{}: {}", block.id, block.note.as_ref()?)));
+            let notes = results
+                .blocks
+                .iter()
+                .filter_map(|block| Some(format!("{}: {}", block.id, block.note.as_ref()?)));
             print(&notes.collect::<Vec<_>>().join("\n"))
         }
     }
