@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use kelir_server::{Handle, Making, RenderMaker, Server, ServerConfig, StartError};
 
 use crate::output::print;

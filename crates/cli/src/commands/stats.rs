@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::{Subcommand, ValueEnum};
 use kelir_server::results::{self, ResultsError, StudyResults};
-use kelir_stats::{TTest, t_test_from_counts};
+use kelir_stats::inference::{TTest, t_test_from_counts};
 use kelir_study::analysis::BlockSummary;
 
 use crate::bad_input;
