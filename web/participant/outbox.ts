@@ -1,0 +1,153 @@
+/**
+ * Answers on their way to the server. Each is written to storage before it is sent and leaves it only when the server
+ * has acknowledged it (an acknowledgement means committed), so neither a reload nor a lost line loses one.
+ */
+import { backoffMs } from "../shared/backoff.ts";
+import { isTemporary, Refused } from "../shared/http.ts";
+import type { Answer } from "./api.ts";
+import type { Store } from "./storage.ts";
+
+export interface Waiting {
+  index: number;
+  answer: Answer;
+  /** Set when the server refused it for good: it is kept, and not sent again by itself. */
+  refused?: string;
+}
+
+/** What the outside may want to say about the line. */
+export type Line = "idle" | "sending" | "waiting" | "refused";
+
+export interface Hooks {
+  send(index: number, answer: Answer): Promise<unknown>;
+  /** The server has this trial: our answer, or an earlier one that stands. */
+  onStored(index: number, outcome: "acknowledged" | "already_answered"): void;
+  onLine(line: Line): void;
+  setTimer(run: () => void, ms: number): unknown;
+  clearTimer(timer: unknown): void;
+  random(): number;
+}
+
+export class Outbox {
+  readonly #key: string;
+  readonly #store: Store;
+  readonly #hooks: Hooks;
+  #sending = false;
+  #stopped = false;
+  #failures = 0;
+  #timer: unknown = null;
+  #idle: Array<() => void> = [];
+
+  constructor(key: string, store: Store, hooks: Hooks) {
+    this.#key = key;
+    this.#store = store;
+    this.#hooks = hooks;
+  }
+
+  /** Everything not acknowledged yet, in trial order. */
+  get waiting(): Waiting[] {
+    return this.#store.read<Waiting[]>(this.#key) ?? [];
+  }
+
+  get indices(): Set<number> {
+    return new Set(this.waiting.map((entry) => entry.index));
+  }
+
+  get refused(): Waiting[] {
+    return this.waiting.filter((entry) => entry.refused !== undefined);
+  }
+
+  /** Keeps an answer and starts sending. The first answer to a trial stands. */
+  put(index: number, answer: Answer): void {
+    if (!this.indices.has(index)) {
+      this.#write([...this.waiting, { index, answer }].sort((a, b) => a.index - b.index));
+    }
+    void this.flush();
+  }
+
+  /** Sends what waits, now. Call it at the start, when the line is back, and for "try again". */
+  async flush(): Promise<void> {
+    if (this.#sending || this.#stopped) return;
+    this.#clearTimer();
+    this.#sending = true;
+    try {
+      for (let next = this.#next(); next !== undefined && !this.#stopped; next = this.#next()) {
+        this.#hooks.onLine("sending");
+        if (!(await this.#deliver(next))) return;
+      }
+    } finally {
+      this.#sending = false;
+    }
+    if (this.#stopped) return;
+    this.#hooks.onLine(this.refused.length > 0 ? "refused" : "idle");
+    this.#settle();
+  }
+
+  /** Resolves when nothing waits that can still be sent; what the server refused is in `refused`. */
+  settled(): Promise<void> {
+    return new Promise((resolve) => {
+      this.#idle.push(resolve);
+      void this.flush();
+    });
+  }
+
+  /** Gives refused answers another chance. */
+  retryRefused(): Promise<void> {
+    this.#write(this.waiting.map(({ index, answer }) => ({ index, answer })));
+    return this.flush();
+  }
+
+  /** Sends nothing more (another tab has taken over). */
+  stop(): void {
+    this.#stopped = true;
+    this.#clearTimer();
+  }
+
+  /** True when the entry left the queue or was set aside, false when it has to wait. */
+  async #deliver({ index, answer }: Waiting): Promise<boolean> {
+    try {
+      await this.#hooks.send(index, answer);
+    } catch (error) {
+      if (error instanceof Refused && error.status === 409 && error.code === "already_answered") {
+        this.#remove(index, "already_answered");
+        return true;
+      }
+      if (isTemporary(error)) {
+        this.#failures += 1;
+        const asked = error instanceof Refused ? (error.retryAfterMs ?? 0) : 0;
+        const wait = Math.max(asked, backoffMs(this.#failures, this.#hooks.random));
+        this.#timer = this.#stopped ? null : this.#hooks.setTimer(() => void this.flush(), wait);
+        this.#hooks.onLine("waiting");
+        return false;
+      }
+      const reason = error instanceof Error ? error.message : String(error);
+      this.#write(this.waiting.map((entry) => (entry.index === index ? { ...entry, refused: reason } : entry)));
+      return true;
+    }
+    this.#failures = 0;
+    this.#remove(index, "acknowledged");
+    return true;
+  }
+
+  #next(): Waiting | undefined {
+    return this.waiting.find((entry) => entry.refused === undefined);
+  }
+
+  #remove(index: number, outcome: "acknowledged" | "already_answered"): void {
+    this.#write(this.waiting.filter((entry) => entry.index !== index));
+    this.#hooks.onStored(index, outcome);
+  }
+
+  #write(entries: Waiting[]): void {
+    if (entries.length === 0) this.#store.remove(this.#key);
+    else this.#store.write(this.#key, entries);
+  }
+
+  #clearTimer(): void {
+    if (this.#timer !== null) this.#hooks.clearTimer(this.#timer);
+    this.#timer = null;
+  }
+
+  #settle(): void {
+    for (const resolve of this.#idle.splice(0)) resolve();
+  }
+}

@@ -1,0 +1,63 @@
+/** Small things that must survive a reload, in localStorage where the browser lets us, else in memory. */
+
+export interface Store {
+  /** Whether what is written outlives the page. */
+  readonly durable: boolean;
+  read<T>(key: string): T | null;
+  write(key: string, value: unknown): void;
+  remove(key: string): void;
+}
+
+/** Wraps a `Storage`; a browser that refuses (private windows, full disks) falls back to memory, and says so in `durable`. */
+export function openStore(storage: () => Storage): Store {
+  const memory = new Map<string, string>();
+  let disk: Storage | null = null;
+  try {
+    disk = storage();
+    disk.setItem("kelir:probe", "1");
+    disk.removeItem("kelir:probe");
+  } catch {
+    disk = null;
+  }
+  return {
+    get durable() {
+      return disk !== null && memory.size === 0;
+    },
+    read<T>(key: string): T | null {
+      let text: string | null = memory.get(key) ?? null;
+      try {
+        text ??= disk?.getItem(key) ?? null;
+        return text === null ? null : (JSON.parse(text) as T);
+      } catch {
+        return null;
+      }
+    },
+    write(key, value) {
+      const text = JSON.stringify(value);
+      try {
+        if (disk === null) throw new Error("no storage");
+        disk.setItem(key, text);
+        memory.delete(key);
+      } catch {
+        memory.set(key, text);
+      }
+    },
+    remove(key) {
+      memory.delete(key);
+      try {
+        disk?.removeItem(key);
+      } catch {
+        // nothing to remove from
+      }
+    },
+  };
+}
+
+/**
+ * The key of a participant's session: the study and the link they came by, so that a reload resumes and a panel's
+ * next participant on the same machine (other parameters in the link) starts anew.
+ */
+export function sessionKey(study: string, params: Record<string, string>): string {
+  const query = new URLSearchParams(Object.entries(params).sort(([a], [b]) => (a < b ? -1 : 1))).toString();
+  return `kelir:session:${study}${query === "" ? "" : `?${query}`}`;
+}

@@ -1,0 +1,84 @@
+// Screenshots of every page at desktop and phone size, from the mock server: `node test/look.mjs DIST OUT`.
+import { mkdir } from "node:fs/promises";
+import { join } from "node:path";
+import { launch, sizes } from "./browser.mjs";
+import { startMock, study } from "./mock-server.mjs";
+import { results } from "./mock-results.mjs";
+
+const [dist, out, only] = process.argv.slice(2);
+await mkdir(out, { recursive: true });
+const browser = await launch();
+
+async function participant(name, options) {
+  const mock = await startMock({ dist });
+  const context = await browser.newContext(options);
+  const page = await context.newPage();
+  const shot = (step) => page.screenshot({ path: join(out, `participant-${step}-${name}.png`) });
+  page.on("pageerror", (error) => console.log("page error:", error.message));
+  page.on("console", (m) => m.type() === "error" && console.log("console:", m.text()));
+  await page.goto(`${mock.url}/study/${study.id}`);
+  const hook = (id) => page.getByTestId(id);
+  await hook("consent-agree").waitFor();
+  await shot("1-consent");
+  await page.screenshot({ path: join(out, `participant-1-consent-full-${name}.png`), fullPage: true });
+  await hook("consent-agree").click();
+  await hook("start").waitFor();
+  await shot("2-instructions");
+  await hook("start").click();
+  for (let i = 0; i < 5; i++) {
+    await page.getByText(`${i + 1} of 5`).waitFor();
+    await hook("choice-left").waitFor({ state: "visible" });
+    if (i === 0 || i === 4) await shot(`3-trial-${i + 1}`);
+    if (i === 0) {
+      const box = await hook("choice-left").boundingBox();
+      await page.mouse.move(box.x + 50, box.y + 50);
+      await shot("3-trial-hover");
+    }
+    if (i === 4) await page.waitForTimeout(1500);
+    const click = name === "desktop" && i % 2 ? page.keyboard.press("ArrowRight") : hook("choice-left").click();
+    await click;
+    if (i === 1) await shot("3-trial-chosen");
+  }
+  await hook("completion-code").waitFor();
+  await shot("4-thanks");
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+  if (wide) console.log(name, "scrolls sideways");
+  console.log(name, JSON.stringify(mock.log.filter((l) => l.method === "PUT").at(-1).body));
+  await context.close();
+  await mock.close();
+}
+
+async function console_(name, options, scheme) {
+  const mock = await startMock({ dist, results });
+  const context = await browser.newContext({ ...options, colorScheme: scheme });
+  const page = await context.newPage();
+  const shot = (step, full = false) => page.screenshot({ path: join(out, `console-${step}-${name}-${scheme}.png`), fullPage: full });
+  page.on("pageerror", (error) => console.log("page error:", error.message));
+  page.on("console", (m) => m.type() === "error" && console.log("console:", m.text()));
+  await page.goto(`${mock.url}/console`);
+  await page.getByTestId("login-password").waitFor();
+  await shot("1-login");
+  await page.getByTestId("login-password").fill("wrong");
+  await page.getByTestId("login-submit").click();
+  await page.getByText("not the password").waitFor();
+  await shot("1-login-wrong");
+  await page.getByTestId("login-password").fill("wayang");
+  await page.getByTestId("login-submit").click();
+  await page.getByRole("heading", { name: "Studies" }).waitFor();
+  await shot("2-studies");
+  for (const id of [study.id, "empty"]) {
+    await page.goto(`${mock.url}/console/studies/${id}`);
+    await page.getByText("Participants").first().waitFor();
+    await page.waitForTimeout(300);
+    await shot(`3-study-${id}`, true);
+    if (await page.evaluate(() => document.documentElement.scrollWidth > innerWidth)) console.log(name, id, "scrolls sideways");
+  }
+  await context.close();
+  await mock.close();
+}
+
+for (const [name, options] of Object.entries(sizes)) {
+  if (only !== "console") await participant(name, options);
+  if (only !== "participant") for (const scheme of ["light", "dark"]) await console_(name, options, scheme);
+}
+await browser.close();

@@ -1,0 +1,165 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { Answer } from "../participant/api.ts";
+import { type Line, Outbox } from "../participant/outbox.ts";
+import { openStore, type Store } from "../participant/storage.ts";
+import { backoffMs } from "../shared/backoff.ts";
+import { Refused } from "../shared/http.ts";
+
+const answer = (choice: "left" | "right"): Answer => ({ choice, rt: 1, onset: 1 });
+
+/** localStorage, as far as the outbox needs it. */
+function disk(): Storage {
+  const map = new Map<string, string>();
+  return {
+    ...{ length: 0, clear: () => map.clear(), key: () => null },
+    getItem: (k) => map.get(k) ?? null,
+    setItem: (k, v) => void map.set(k, v),
+    removeItem: (k) => void map.delete(k),
+  };
+}
+
+/** An outbox whose server answers as told, and whose clock only moves when asked to. */
+function bench(reply: (index: number, tries: number) => unknown, store: Store = openStore(() => disks)) {
+  const sent: number[] = [];
+  const stored: Array<[number, string]> = [];
+  const lines: Line[] = [];
+  const timers = new Map<number, { run: () => void; ms: number }>();
+  const outbox = new Outbox("box", store, {
+    send: async (index) => {
+      sent.push(index);
+      const result = reply(index, sent.length);
+      if (result instanceof Error) throw result;
+    },
+    onStored: (index, outcome) => stored.push([index, outcome]),
+    onLine: (line) => lines.push(line),
+    setTimer: (run, ms) => (timers.set(timers.size, { run, ms }), timers.size - 1),
+    clearTimer: (timer) => timers.delete(timer as number),
+    random: () => 0.5,
+  });
+  const elapse = async () => {
+    const due = [...timers.values()];
+    timers.clear();
+    due.forEach(({ run }) => run());
+    await settle();
+  };
+  return { outbox, sent, stored, lines, timers, elapse, store };
+}
+const settle = () => new Promise((resolve) => setImmediate(resolve));
+let disks = disk();
+test.beforeEach(() => (disks = disk()));
+
+test("an answer leaves the queue when it is acknowledged, and not before", async () => {
+  const { outbox, stored, sent } = bench(() => true);
+  outbox.put(0, answer("left"));
+  assert.deepEqual([...outbox.indices], [0], "still kept while it is on its way");
+  await outbox.settled();
+  assert.deepEqual([...outbox.indices], []);
+  assert.deepEqual(stored, [[0, "acknowledged"]]);
+  assert.deepEqual(sent, [0]);
+});
+
+test("a lost line delays and loses nothing; the order is kept", async () => {
+  const { outbox, sent, lines, timers, elapse } = bench((_, tries) => (tries <= 2 ? new TypeError("failed to fetch") : true));
+  outbox.put(0, answer("left"));
+  await settle();
+  outbox.put(1, answer("right"));
+  await settle();
+  assert.deepEqual([...outbox.indices], [0, 1]);
+  assert.equal(lines.at(-1), "waiting");
+  assert.equal(timers.size, 1, "one retry is planned, not one an answer");
+  await elapse();
+  assert.deepEqual(sent, [0, 0, 0, 1]);
+  assert.deepEqual([...outbox.indices], []);
+  assert.equal(lines.at(-1), "idle");
+});
+
+test("answers survive a reload: a new outbox on the same storage sends them", async () => {
+  const first = bench(() => new TypeError("offline"));
+  first.outbox.put(3, answer("left"));
+  await settle();
+  first.outbox.stop();
+  const second = bench(() => true);
+  assert.deepEqual([...second.outbox.indices], [3]);
+  await second.outbox.settled();
+  assert.deepEqual(second.stored, [[3, "acknowledged"]]);
+  // Another storage knows nothing of them: it is the storage that carries them over.
+  assert.deepEqual([...bench(() => true, openStore(() => disk())).outbox.indices], []);
+});
+
+for (const status of [408, 429, 500, 503]) {
+  test(`status ${status} is retried`, async () => {
+    const { outbox, timers, elapse } = bench((_, tries) => (tries === 1 ? new Refused(status, "x", "x") : true));
+    outbox.put(0, answer("left"));
+    await settle();
+    assert.equal(timers.size, 1);
+    await elapse();
+    assert.deepEqual(outbox.waiting, []);
+  });
+}
+
+for (const status of [400, 401, 404, 413, 422]) {
+  test(`status ${status} is not retried by itself; the answer is kept and the next one goes on`, async () => {
+    const { outbox, sent, timers, lines } = bench((index) => (index === 0 ? new Refused(status, "no", "Not like this.") : true));
+    outbox.put(0, answer("left"));
+    outbox.put(1, answer("right"));
+    await outbox.settled();
+    assert.equal(timers.size, 0);
+    assert.deepEqual(sent, [0, 1]);
+    assert.deepEqual(outbox.refused.map((e) => [e.index, e.refused]), [[0, "Not like this."]]);
+    assert.equal(lines.at(-1), "refused");
+  });
+}
+
+test("refused answers go out again when asked to", async () => {
+  const { outbox, stored } = bench((_, tries) => (tries === 1 ? new Refused(400, "no", "no") : true));
+  outbox.put(0, answer("left"));
+  await outbox.settled();
+  await outbox.retryRefused();
+  assert.deepEqual(outbox.waiting, []);
+  assert.deepEqual(stored, [[0, "acknowledged"]]);
+});
+
+test("already_answered ends the matter; another conflict does not", async () => {
+  const known = bench(() => new Refused(409, "already_answered", "stands"));
+  known.outbox.put(0, answer("left"));
+  await known.outbox.settled();
+  assert.deepEqual(known.stored, [[0, "already_answered"]]);
+  assert.deepEqual(known.outbox.waiting, []);
+
+  disks = disk();
+  const other = bench(() => new Refused(409, "out_of_order", "no"));
+  other.outbox.put(0, answer("left"));
+  await other.outbox.settled();
+  assert.equal(other.outbox.refused.length, 1);
+});
+
+test("the first answer to a trial stands", async () => {
+  const { outbox } = bench(() => new TypeError("offline"));
+  outbox.put(0, answer("left"));
+  outbox.put(0, answer("right"));
+  await settle();
+  assert.deepEqual(outbox.waiting.map((e) => e.answer.choice), ["left"]);
+});
+
+test("the server's own waiting time is respected", async () => {
+  const { outbox, timers } = bench(() => new Refused(429, "slow_down", "x", 20_000));
+  outbox.put(0, answer("left"));
+  await settle();
+  assert.deepEqual([...timers.values()].map((t) => t.ms), [20_000]);
+});
+
+test("a stopped outbox sends nothing more", async () => {
+  const { outbox, sent, timers } = bench(() => new TypeError("offline"));
+  outbox.put(0, answer("left"));
+  await settle();
+  outbox.stop();
+  await outbox.flush();
+  assert.equal(timers.size, 0);
+  assert.deepEqual(sent, [0]);
+});
+
+test("waiting doubles from one second to thirty, with jitter below", () => {
+  assert.deepEqual([1, 2, 3, 4, 5, 6, 60].map((n) => backoffMs(n, () => 1)), [1000, 2000, 4000, 8000, 16_000, 30_000, 30_000]);
+  assert.equal(backoffMs(3, () => 0), 2000);
+});

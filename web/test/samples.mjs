@@ -1,0 +1,48 @@
+// Pictures for the mock server: a soft shadow on cloth, drawn here, so that no fixture has to be kept.
+import { createHash } from "node:crypto";
+import { crc32, deflateSync } from "node:zlib";
+
+/** An 8-bit RGB PNG of `rgb` (row by row). */
+export function png(width, height, rgb) {
+  const chunk = (type, data) => {
+    const body = Buffer.concat([Buffer.from(type, "latin1"), data]);
+    const out = Buffer.alloc(body.length + 8);
+    out.writeUInt32BE(data.length, 0);
+    body.copy(out, 4);
+    out.writeUInt32BE(crc32(body), body.length + 4);
+    return out;
+  };
+  const header = Buffer.alloc(13);
+  header.writeUInt32BE(width, 0);
+  header.writeUInt32BE(height, 4);
+  header.set([8, 2, 0, 0, 0], 8);
+  const raw = Buffer.alloc((width * 3 + 1) * height);
+  for (let y = 0; y < height; y++) raw.set(rgb.subarray(y * width * 3, (y + 1) * width * 3), y * (width * 3 + 1) + 1);
+  const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
+  return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(raw, { level: 1 })), chunk("IEND", Buffer.alloc(0))]);
+}
+
+/** A leaf-shaped puppet with a row of holes, turned by `turn` radians, with edges `soft` pixels wide. */
+export function shadow({ width = 592, height = 333, turn = 0, soft = 6, noise = 0, seed = 1 } = {}) {
+  const rgb = new Uint8Array(width * height * 3);
+  let state = seed >>> 0 || 1;
+  const random = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
+  const step = (d) => 1 / (1 + Math.exp(-d / (soft / 3)));
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) {
+      const dx = (x - width / 2) * Math.cos(turn) + (y - height * 0.54) * Math.sin(turn);
+      const dy = -(x - width / 2) * Math.sin(turn) + (y - height * 0.54) * Math.cos(turn);
+      const leaf = Math.hypot(dx, (dy + 20) / 1.5) - 78 + 18 * Math.cos(6 * Math.atan2(dy, dx));
+      const hole = Math.hypot(((dx + 400) % 40) - 20, ((dy + 400) % 44) - 22) - 8;
+      const rod = Math.max(Math.abs(dx) - 3, 40 - dy);
+      const dark = Math.max(Math.min(1 - step(leaf), step(hole)), 1 - step(rod));
+      const vignette = 1 - 0.55 * (((x - width / 2) / width) ** 2 + ((y - height / 2) / height) ** 2) * 2;
+      const weave = 1 + 0.03 * (((x >> 1) + (y >> 1)) % 2) + noise * (random() - 0.5);
+      const light = (0.06 + 0.94 * (1 - dark)) * vignette * weave;
+      for (const [i, tint] of [238, 205, 150].entries()) rgb[(y * width + x) * 3 + i] = Math.min(255, Math.max(0, tint * light));
+    }
+  }
+  return png(width, height, rgb);
+}
+
+export const sha256 = (bytes) => createHash("sha256").update(bytes).digest("hex");
