@@ -25,7 +25,10 @@ const notice = h("p", { id: "notice", role: "status" });
 document.body.append(display, notice);
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
-const params = Object.fromEntries(new URLSearchParams(location.search));
+/** What the link says of the participant, within what the server takes. */
+const params = Object.fromEntries(
+  [...new URLSearchParams(location.search)].filter(([name, value]) => name.length <= 64 && value.length <= 128).slice(0, 64),
+);
 const store = openStore(() => localStorage);
 const key = sessionKey(studyId, params);
 
@@ -47,11 +50,18 @@ async function persist<T>(ask: () => Promise<T>): Promise<T> {
       return answer;
     } catch (error) {
       if (!isTemporary(error)) throw error;
-      say("page", "No connection. Nothing is lost: this page goes on by itself when it is back.");
+      say("page", hindrance(error));
       const asked = error instanceof Refused ? (error.retryAfterMs ?? 0) : 0;
       await pause(Math.max(asked, backoffMs(failures)));
     }
   }
+}
+
+/** What keeps us waiting, in words that are true of it. */
+function hindrance(error: unknown): string {
+  if (!(error instanceof Refused)) return "No connection. Nothing is lost: this page goes on by itself when it is back.";
+  if (error.code === "not_ready" || error.code === "stimuli_failed") return error.message;
+  return "The server is busy. Nothing is lost: this page goes on by itself in a moment.";
 }
 
 /** A page that ends the visit, with at most one thing to do. */
@@ -166,6 +176,8 @@ class Session {
         const { number, of } = position(this.#trials, current());
         return `${number} of ${of}`;
       },
+      left: () => current().left.sha256,
+      right: () => current().right.sha256,
       width: () => current().width,
       height: () => current().height,
       load: () => this.#loader.load(current()),

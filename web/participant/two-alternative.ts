@@ -13,6 +13,9 @@ const info = <const>{
     question: { type: ParameterType.STRING, default: undefined },
     /** Where the trial stands, as "7 of 25". */
     position: { type: ParameterType.STRING, default: "" },
+    /** Hashes of the two stimuli. */
+    left: { type: ParameterType.STRING, default: undefined },
+    right: { type: ParameterType.STRING, default: undefined },
     /** Stimulus pixels; both pictures have this size. */
     width: { type: ParameterType.INT, default: undefined },
     height: { type: ParameterType.INT, default: undefined },
@@ -144,7 +147,7 @@ class Stage {
     };
     const [left, right] = [surface(pair.left), surface(pair.right)];
     const button = (side: Side, label: string, picture: HTMLElement) =>
-      h("button", { type: "button", class: "picture", "aria-label": label, "data-testid": `choice-${side}` }, picture);
+      h("button", { type: "button", class: "picture", "aria-label": label, "data-testid": `choice-${side}`, "data-sha256": trial[side] }, picture);
     this.#buttons = { left: button("left", "Left image", left.element), right: button("right", "Right image", right.element) };
     this.#paint = { left: left.context, right: right.context };
     this.#heading = h("h1", { tabindex: -1 }, trial.question);

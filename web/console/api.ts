@@ -1,0 +1,68 @@
+/** The researcher's half of the HTTP interface. */
+import { request } from "../shared/http.ts";
+
+export interface Participants {
+  started: number;
+  in_progress: number;
+  completed: number;
+}
+
+export interface StudyRow {
+  id: string;
+  title: string;
+  participants: Participants;
+}
+
+/** A block's choices of the target per participant, and the two-tailed one-sample t-test against half the pairs. */
+export interface Block {
+  id: string;
+  title: string;
+  kind: "still" | "animation";
+  conditions: [string, string];
+  target: string;
+  pairs: number;
+  /** Participants who answered every pair of the block. */
+  n: number;
+  /** Participants who answered some, left out. */
+  incomplete?: number;
+  /** Number of target choices → number of participants. */
+  counts: Record<string, number>;
+  mean: number | null;
+  sd: number | null;
+  mu: number;
+  t: number | null;
+  df: number | null;
+  p: number | null;
+  note?: string | null;
+}
+
+export interface Stimulus {
+  pair: string;
+  condition: string;
+  block?: string;
+  sha256: string;
+  provenance: unknown;
+}
+
+export interface Results {
+  study: string;
+  title: string;
+  config_hash: string;
+  participants: Participants;
+  blocks: Block[];
+  stimuli: Stimulus[];
+}
+
+const admin = "/api/v1/admin/studies";
+
+export const login = (password: string) => request<void>("/api/v1/login", { method: "POST", body: { password } });
+export const logout = () => request<void>("/api/v1/logout", { method: "POST" });
+export const fetchResults = (study: string) => request<Results>(`${admin}/${encodeURIComponent(study)}/results`);
+
+/** The list, however it is wrapped. */
+export async function fetchStudies(): Promise<StudyRow[]> {
+  const answer = await request<StudyRow[] | { studies: StudyRow[] }>(admin);
+  return Array.isArray(answer) ? answer : answer.studies;
+}
+
+export const csvAddress = (study: string, file: "responses" | "codebook") => `${admin}/${encodeURIComponent(study)}/${file}.csv`;

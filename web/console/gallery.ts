@@ -1,0 +1,98 @@
+/** The stimuli as participants see them, and where each came from. */
+import { h } from "../shared/dom.ts";
+import { significant } from "../shared/format.ts";
+import type { Stimulus } from "./api.ts";
+import { number } from "./copy.ts";
+
+/** Every pair with its conditions side by side. */
+export function gallery(stimuli: readonly Stimulus[]): HTMLElement[] {
+  const pairs = new Map<string, Stimulus[]>();
+  for (const stimulus of stimuli) {
+    const name = [stimulus.block, stimulus.pair].filter((part) => part !== undefined).join(" / ");
+    pairs.set(name, [...(pairs.get(name) ?? []), stimulus]);
+  }
+  return [...pairs].map(([name, members]) =>
+    h("section", { class: "pair" }, h("h3", {}, name), h("div", { class: "conditions" }, ...members.map(card))),
+  );
+}
+
+function card(stimulus: Stimulus): HTMLElement {
+  const facts = flatten(stimulus.provenance);
+  const errors = facts.filter(([name]) => /(^|\.)(error|rmse|max_error|p99_9|standard_error)/.test(name));
+  return h(
+    "figure",
+    { class: "stimulus" },
+    picture(stimulus),
+    h(
+      "figcaption",
+      {},
+      h("strong", {}, stimulus.condition),
+      ...errors.slice(0, 3).map(([name, value]) => h("span", { class: "fact" }, `${words(name)} `, shown(value))),
+      h("span", { class: "fact" }, "sha256 ", number(stimulus.sha256.slice(0, 12), stimulus.sha256)),
+      h("details", {}, h("summary", {}, "Where it came from"), h("dl", {}, ...facts.flatMap(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, shown(value))]))),
+    ),
+  );
+}
+
+const address = (sha256: string) => `/stimuli/${encodeURIComponent(sha256)}`;
+const words = (name: string) => name.replace(/_/g, " ").replace(/\./g, " · ");
+const shown = (value: unknown) =>
+  typeof value === "number" && !Number.isInteger(value)
+    ? number(significant(value), value)
+    : typeof value === "string" && /^[0-9a-f]{64}$/.test(value)
+      ? number(value.slice(0, 12), value)
+      : number(String(value), String(value));
+
+/** `{ a: { b: 1 } }` as `[["a.b", 1]]`; lists of plain values stay in one piece. */
+export function flatten(value: unknown, name = ""): Array<[string, unknown]> {
+  if (Array.isArray(value) && value.every((item) => item === null || typeof item !== "object")) return [[name, value.join(", ")]];
+  if (value !== null && typeof value === "object") {
+    return Object.entries(value).flatMap(([key, inner]) => flatten(inner, name === "" ? key : `${name}.${key}`));
+  }
+  return value === undefined || value === null ? [] : [[name, value]];
+}
+
+/** A still as it is; an animation as its first frame, with a button that plays it. */
+function picture({ sha256, pair, condition }: Stimulus): HTMLElement {
+  const image = h("img", { alt: `${pair}, ${condition}`, loading: "lazy", src: address(sha256) });
+  const holder = h("div", { class: "picture" }, image);
+  image.addEventListener(
+    "error",
+    async () => {
+      try {
+        const manifest = (await (await fetch(address(sha256))).json()) as { fps: number; frames: string[] };
+        holder.append(player(image, manifest));
+      } catch {
+        holder.replaceChildren(h("p", { class: "missing" }, "This stimulus is not stored here."));
+      }
+    },
+    { once: true },
+  );
+  return holder;
+}
+
+function player(image: HTMLImageElement, { fps, frames }: { fps: number; frames: string[] }): HTMLButtonElement {
+  const source = (i: number) => address(frames[i % frames.length] ?? "");
+  const label = `Play ${frames.length} frames at ${fps} fps`;
+  const button = h("button", { type: "button", class: "play" }, label);
+  image.src = source(0);
+  let since: number | null = null;
+  const step = (now: number) => {
+    if (since === null || !image.isConnected) return;
+    image.src = source(Math.floor(((now - since) * fps) / 1000));
+    requestAnimationFrame(step);
+  };
+  button.addEventListener("click", async () => {
+    if (since !== null) {
+      since = null;
+      button.textContent = label;
+      return;
+    }
+    button.textContent = "Loading the frames";
+    await Promise.all([...new Set(frames)].map((frame) => Object.assign(new Image(), { src: address(frame) }).decode()));
+    button.textContent = "Stop";
+    since = performance.now();
+    requestAnimationFrame(step);
+  });
+  return button;
+}

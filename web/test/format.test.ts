@@ -1,0 +1,32 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { count, fixed, interval, pValue, significant } from "../shared/format.ts";
+
+test("the paper's numbers look as the paper prints them, with a true minus", () => {
+  assert.deepEqual([fixed(0.8125, 3), fixed(-1.4375905, 3), fixed(4.208834, 3)], ["0.813", "−1.438", "4.209"]);
+  assert.notEqual(fixed(-1.4375905, 3), "-1.438", "a hyphen is no minus");
+});
+
+test("what is missing or unbounded has a sign of its own", () => {
+  assert.deepEqual([fixed(null, 3), fixed(undefined, 3), fixed(NaN, 3)], ["–", "–", "–"]);
+  assert.deepEqual([fixed(Infinity, 3), significant(-Infinity), significant(null)], ["∞", "−∞", "–"]);
+});
+
+test("nothing is shown as minus zero", () => {
+  assert.equal(fixed(-0.0004, 3), "0.000");
+  assert.equal(fixed(-0.0006, 3), "−0.001");
+});
+
+test("small p-values keep their digits", () => {
+  assert.deepEqual([0.16056, 0.001, 0.000203782, 1e-300, 0, null].map(pValue), ["0.161", "0.001", "2.04 × 10⁻⁴", "1.00 × 10⁻³⁰⁰", "0", "–"]);
+});
+
+test("significant digits, plain where that reads well", () => {
+  assert.deepEqual([0.00821, 12.345, 123456, 1234567, -0.5].map((x) => significant(x)), ["0.00821", "12.3", "123456", "1.23 × 10⁶", "−0.500"]);
+});
+
+test("intervals and counts", () => {
+  assert.equal(interval(-0.59, 0.098, 2), "−0.59 to 0.10");
+  assert.equal(interval(null, 1, 2), "–");
+  assert.deepEqual([count(1, "pair"), count(0, "pair"), count(1200, "pair")], ["1 pair", "0 pairs", "1,200 pairs"]);
+});
