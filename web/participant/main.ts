@@ -27,7 +27,7 @@ document.body.append(display, notice);
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
 /** What the link says of the participant, within what the server takes. */
 const params = Object.fromEntries(
-  [...new URLSearchParams(location.search)].filter(([name, value]) => name.length <= 64 && value.length <= 128).slice(0, 64),
+  [...new URLSearchParams(location.search)].filter(([name, value]) => new Blob([name]).size <= 64 && new Blob([value]).size <= 512).slice(0, 64),
 );
 const store = openStore(() => localStorage);
 const key = sessionKey(studyId, params);

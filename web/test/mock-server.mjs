@@ -11,6 +11,13 @@ const TYPES = { ".js": "text/javascript; charset=utf-8", ".css": "text/css; char
 const CSP =
   "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
+const HEADERS = {
+  "content-security-policy": CSP,
+  "cross-origin-opener-policy": "same-origin",
+  "cross-origin-embedder-policy": "require-corp",
+  "cross-origin-resource-policy": "same-origin",
+};
+
 export const study = {
   id: "shadow-puppets",
   title: "Shadows on a screen",
@@ -139,7 +146,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     const { pathname: path } = new URL(req.url, "http://mock");
     const token = req.headers.authorization?.replace(/^Bearer /, "");
     const send = (status, type, data, headers = {}) => {
-      res.writeHead(status, { "content-type": type, ...headers });
+      res.writeHead(status, { "content-type": type, ...HEADERS, ...headers });
       res.end(data);
     };
     const json = ([status, data, headers = {}]) => send(status, "application/json", data === null ? "" : JSON.stringify(data), { "cache-control": "no-store", ...headers });
@@ -158,7 +165,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     }
     const page = path.startsWith("/study/") ? "participant.html" : path.startsWith("/console") ? "console.html" : null;
     try {
-      if (page) return send(200, "text/html; charset=utf-8", await readFile(join(dist, page)), { "content-security-policy": CSP });
+      if (page) return send(200, "text/html; charset=utf-8", await readFile(join(dist, page)));
       if (path.startsWith("/assets/")) return send(200, TYPES[extname(path)], await readFile(join(dist, "assets", path.slice(8))));
     } catch {
       // not found, below
