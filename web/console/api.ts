@@ -11,6 +11,10 @@ export interface StudyRow {
   id: string;
   title: string;
   participants: Participants;
+  /** Whether participants can come, and if not, why. */
+  status?: "ready" | "preparing" | "failed";
+  /** Of `preparing` how far it is, of `failed` the reason. */
+  detail?: { done: number; total: number; stimulus: string } | string | null;
 }
 
 /** A block's choices of the target per participant, and the two-tailed one-sample t-test against half the pairs. */
@@ -36,12 +40,30 @@ export interface Block {
   note?: string | null;
 }
 
+/** Differences in units of the brightest unshadowed point. */
+export interface Errors {
+  count: number;
+  bias: number;
+  rmse: number;
+  p999: number;
+  max: number;
+}
+
+/** A stimulus's measured error against its reference. */
+export interface Measured {
+  reference: { technique: string; [knob: string]: unknown };
+  frames: number[];
+  all: Errors;
+  penumbra: Errors;
+  /** The reference's own standard error: what no measured error can go below. */
+  floor: number | null;
+}
+
 export interface Stimulus {
   pair: string;
   condition: string;
-  block?: string;
   sha256: string;
-  provenance: unknown;
+  provenance: { technique?: string; error?: Measured | null; [fact: string]: unknown };
 }
 
 export interface Results {
@@ -51,6 +73,8 @@ export interface Results {
   participants: Participants;
   blocks: Block[];
   stimuli: Stimulus[];
+  /** Sessions of other versions of the study, which these results leave out. */
+  other_versions?: Array<{ config_hash: string; sessions: number }>;
 }
 
 const admin = "/api/v1/admin/studies";

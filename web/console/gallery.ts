@@ -1,15 +1,14 @@
 /** The stimuli as participants see them, and where each came from. */
 import { h } from "../shared/dom.ts";
 import { significant } from "../shared/format.ts";
-import type { Stimulus } from "./api.ts";
+import type { Measured, Stimulus } from "./api.ts";
 import { number } from "./copy.ts";
 
 /** Every pair with its conditions side by side. */
 export function gallery(stimuli: readonly Stimulus[]): HTMLElement[] {
   const pairs = new Map<string, Stimulus[]>();
   for (const stimulus of stimuli) {
-    const name = [stimulus.block, stimulus.pair].filter((part) => part !== undefined).join(" / ");
-    pairs.set(name, [...(pairs.get(name) ?? []), stimulus]);
+    pairs.set(stimulus.pair, [...(pairs.get(stimulus.pair) ?? []), stimulus]);
   }
   return [...pairs].map(([name, members]) =>
     h("section", { class: "pair" }, h("h3", {}, name), h("div", { class: "conditions" }, ...members.map(card))),
@@ -17,8 +16,8 @@ export function gallery(stimuli: readonly Stimulus[]): HTMLElement[] {
 }
 
 function card(stimulus: Stimulus): HTMLElement {
-  const facts = flatten(stimulus.provenance);
-  const errors = facts.filter(([name]) => /(^|\.)(error|rmse|max_error|p99_9|standard_error)/.test(name));
+  const { error, ...rest } = stimulus.provenance;
+  const facts = flatten(rest);
   return h(
     "figure",
     { class: "stimulus" },
@@ -27,15 +26,29 @@ function card(stimulus: Stimulus): HTMLElement {
       "figcaption",
       {},
       h("strong", {}, stimulus.condition),
-      ...errors.slice(0, 3).map(([name, value]) => h("span", { class: "fact" }, `${words(name)} `, shown(value))),
-      h("span", { class: "fact" }, "sha256 ", number(stimulus.sha256.slice(0, 12), stimulus.sha256)),
-      h("details", {}, h("summary", {}, "Where it came from"), h("dl", {}, ...facts.flatMap(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, shown(value))]))),
+      ...(error === null || error === undefined ? [h("span", { class: "fact" }, "error not measured")] : measured(error)),
+      h(
+        "details",
+        {},
+        h("summary", {}, "Where it came from"),
+        h("dl", {}, ...[["sha256", stimulus.sha256] as [string, unknown], ...facts, ...flatten(error ?? {}, "error")].flatMap(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, shown(value))])),
+      ),
     ),
   );
 }
 
+/** The error in a line: where shadows are soft, because that is where techniques differ. */
+function measured({ reference, penumbra, floor }: Measured): HTMLElement[] {
+  const { technique, ...knobs } = reference;
+  const detail = Object.entries(knobs).flatMap(([name, value]) => (typeof value === "number" || typeof value === "string" ? [`${words(name)} ${value}`] : []));
+  return [
+    h("span", { class: "fact" }, "penumbra error: RMSE ", number(significant(penumbra.rmse), penumbra.rmse), ", max ", number(significant(penumbra.max), penumbra.max), " of full scale"),
+    h("span", { class: "fact" }, `against ${[technique, ...detail].join(", ")}`, ...(floor === null ? [] : [", whose own error is ", number(significant(floor), floor)])),
+  ];
+}
+
 const address = (sha256: string) => `/stimuli/${encodeURIComponent(sha256)}`;
-const words = (name: string) => name.replace(/_/g, " ").replace(/\./g, " · ");
+const words = (name: string) => name.replaceAll("_", " ").replaceAll(".", " · ");
 const shown = (value: unknown) =>
   typeof value === "number" && !Number.isInteger(value)
     ? number(significant(value), value)

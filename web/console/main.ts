@@ -3,7 +3,7 @@ import { h } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
 import { fetchStudies, login, logout, type StudyRow } from "./api.ts";
 import { number } from "./copy.ts";
-import { showStudy } from "./study.ts";
+import { showStudy, statusText } from "./study.ts";
 import "./style.css";
 
 const main = h("main", {});
@@ -105,7 +105,7 @@ async function showStudies(forward: boolean): Promise<void> {
   document.title = "Studies · kelir";
   const row = (study: StudyRow) => {
     const { completed, in_progress, started } = study.participants;
-    return h("tr", {}, h("th", { scope: "row" }, link(address(study), study.title)), ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))));
+    return h("tr", {}, h("th", { scope: "row" }, link(address(study), study.title), ...[statusText(study)].map((text) => text !== null && h("span", { class: "note" }, text))), ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))));
   };
   const table = h(
     "table",

@@ -2,7 +2,7 @@
 import { h } from "../shared/dom.ts";
 import { clockTime, count, fixed, pValue } from "../shared/format.ts";
 import { isTemporary } from "../shared/http.ts";
-import { type Block, csvAddress, fetchResults, type Participants, type Results } from "./api.ts";
+import { type Block, csvAddress, fetchResults, fetchStudies, type Participants, type Results, type StudyRow } from "./api.ts";
 import { copyButton, number, tableText } from "./copy.ts";
 import { gallery } from "./gallery.ts";
 import { choiceDistribution } from "./plots.ts";
@@ -26,26 +26,28 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
     sections.set(name, { shown, element });
   };
 
-  const draw = (results: Results) => {
+  const look = () => Promise.all([fetchResults(id), fetchStudies()]);
+  const draw = ([results, studies]: [Results, StudyRow[]]) => {
     document.title = `${results.title} · kelir`;
-    section("head", [results.title, results.config_hash], () => head(results));
+    section("head", [results.title, results.config_hash, results.other_versions], () => head(results));
+    section("status", studies.find((row) => row.id === id)?.detail ?? null, () => status(studies.find((row) => row.id === id)));
     section("participants", results.participants, () => participants(results.participants, id));
     section("choices", results.blocks, () => choices(results.blocks));
-    section("stimuli", results.stimuli, () => [h("h2", {}, "Stimuli"), ...(results.stimuli.length > 0 ? gallery(results.stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts: its terminal shows how far it is.")])]);
+    section("stimuli", results.stimuli, () => [h("h2", {}, "Stimuli"), ...(results.stimuli.length > 0 ? gallery(results.stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
     section("data", id, () => data(id));
     updated.textContent = `Updated ${clockTime(new Date())}`;
     updated.classList.remove("stale");
   };
 
-  draw(await fetchResults(id));
+  draw(await look());
   if (signal.aborted) return;
   root.replaceChildren(updated, body);
 
   const refresh = async () => {
     if (document.hidden || signal.aborted) return;
     try {
-      const results = await fetchResults(id);
-      if (!signal.aborted) draw(results);
+      const seen = await look();
+      if (!signal.aborted) draw(seen);
     } catch (error) {
       if (signal.aborted) return;
       if (!isTemporary(error)) return location.reload();
@@ -59,12 +61,29 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
   signal.addEventListener("abort", () => clearInterval(timer));
 }
 
-function head({ title, study, config_hash }: Results): Node[] {
+function head({ title, study, config_hash, other_versions }: Results): Node[] {
+  const others = (other_versions ?? []).reduce((sum, version) => sum + version.sessions, 0);
   return [
     h("h1", { tabindex: -1 }, title),
-    h("p", { class: "quiet" }, `${study} · definition `, number(config_hash.slice(0, 12), config_hash)),
+    h("p", { class: "quiet" }, `${study} · version `, number(config_hash.slice(0, 12), config_hash)),
+    ...(others > 0 ? [h("p", { class: "quiet" }, `${count(others, "session")} of other versions of this study ${others === 1 ? "is" : "are"} stored too and left out here.`)] : []),
     invitation(study),
   ];
+}
+
+/** Says what keeps participants out, if anything does. */
+function status(row: StudyRow | undefined): Node[] {
+  const text = statusText(row);
+  return text === null ? [] : [h("p", { class: "banner", role: "status" }, text)];
+}
+
+/** A study's readiness in words; null when participants can come. */
+export function statusText(row: StudyRow | undefined): string | null {
+  if (row?.status === "failed") return `The stimuli could not be made, so nobody can take part: ${typeof row.detail === "string" ? row.detail : "the server's log says why"}.`;
+  if (row?.status !== "preparing") return null;
+  const detail = row.detail;
+  const far = detail !== null && typeof detail === "object" ? `: ${detail.done} of ${detail.total} ready` : "";
+  return `The stimuli are being made${far}. Participants who come now are asked to wait.`;
 }
 
 /** The participants' link: the one thing that moves a study on. */

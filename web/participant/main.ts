@@ -169,6 +169,7 @@ class Session {
     };
     // The plan is the server's, so the parameters are read when a trial begins.
     const current = () => this.#remaining()[0] as api.Trial;
+    let over: api.Trial | null = null;
     const trial = {
       type: TwoAlternative,
       question,
@@ -187,7 +188,14 @@ class Session {
         if (next !== undefined) this.#loader.preload(next, now?.kind !== "animation");
       },
       on_load: () => display.removeAttribute("tabindex"),
-      on_finish: (row: Record<string, unknown>) => this.#answered(current(), row),
+      on_choice: (data: Record<string, unknown>) => {
+        const answered = current();
+        this.#answered(answered, { ...data, time_elapsed: jsPsych.getTotalTime() });
+        over = answered;
+      },
+      on_finish: () => {
+        if (over !== null) this.#loader.release(over);
+      },
     };
     try {
       await jsPsych.run([
@@ -267,16 +275,10 @@ class Session {
     });
   }
 
-  #answered(trial: api.Trial, row: Record<string, unknown>): void {
-    const { choice, rt, onset, input, scale, arrangement, device_pixel_ratio, viewport, refresh_hz, hidden_ms, frames } = row;
-    const { time_elapsed, trial_type, plugin_version } = row;
-    const answer = {
-      ...{ choice, rt, onset, time_elapsed, trial_type, plugin_version, input, scale, arrangement, device_pixel_ratio, viewport },
-      ...{ refresh_hz, hidden_ms, reload_count: this.#who?.reloads ?? 0, timestamp: new Date().toISOString() },
-      ...(frames === undefined ? {} : { frames }),
-    } as api.Answer;
-    this.outbox.put(trial.trial_index, answer);
-    this.#loader.release(trial);
+  #answered(trial: api.Trial, data: Record<string, unknown>): void {
+    const { name: trial_type, version: plugin_version } = TwoAlternative.info;
+    const more = { trial_type, plugin_version, reload_count: this.#who?.reloads ?? 0, timestamp: new Date().toISOString() };
+    this.outbox.put(trial.trial_index, { ...data, ...more } as unknown as api.Answer);
   }
 
   /** Waits until every answer is stored, then asks for the code: it exists only then. */

@@ -25,6 +25,8 @@ const info = <const>{
     refresh_period: { type: ParameterType.FUNCTION, default: undefined },
     /** Called once the pictures are on the screen: the time to preload the next pair. */
     on_onset: { type: ParameterType.FUNCTION, default: () => {} },
+    /** Called with the trial's data at the choice, before its outline is shown: from then on it must not be lost. */
+    on_choice: { type: ParameterType.FUNCTION, default: () => {} },
     /** How long the chosen picture keeps its outline, ms. */
     feedback_ms: { type: ParameterType.INT, default: 150 },
   },
@@ -91,6 +93,7 @@ export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
       hidden_ms: rounded(stage.hiddenMs),
       ...(play.log() ?? {}),
     };
+    trial.on_choice?.(data);
     stage.mark(side);
     await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));
     play.stop();
@@ -107,8 +110,10 @@ export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
     };
     if (mode === "data-only") {
       onLoad?.();
-      const viewport = [innerWidth, innerHeight];
-      this.#jsPsych.finishTrial({ onset: performance.now(), input: "mouse", scale: 1, device_pixel_ratio: devicePixelRatio, viewport, ...made });
+      const shown = { scale: 1, arrangement: "side", device_pixel_ratio: devicePixelRatio, viewport: [innerWidth, innerHeight] };
+      const data = { onset: performance.now(), input: "mouse", ...shown, refresh_hz: null, hidden_ms: 0, ...made };
+      trial.on_choice?.(data);
+      this.#jsPsych.finishTrial(data);
       return;
     }
     const display = this.#jsPsych.getDisplayElement();

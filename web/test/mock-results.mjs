@@ -18,20 +18,20 @@ const empty = [block("stills", "Stills", "still", ["pa", "mc"], [0, 0, 0], none)
 
 export function results(path, sessions, stuff) {
   const studies = [
-    { id: "shadow-puppets", title: "Shadows on a screen", participants: { started: 36, in_progress: 2, completed: 32 } },
-    { id: "empty", title: "A study that nobody has taken", participants: { started: 0, in_progress: 0, completed: 0 } },
+    { id: "shadow-puppets", title: "Shadows on a screen", status: "ready", detail: null, participants: { started: 36, in_progress: 2, completed: 32 } },
+    { id: "empty", title: "A study that nobody has taken", status: "preparing", detail: { done: 3, total: 10, stimulus: "still-arjuna (mc)" }, participants: { started: 0, in_progress: 0, completed: 0 } },
   ];
   if (path === "/api/v1/admin/studies") return [200, { studies }];
   const [, id, rest] = path.match(/^\/api\/v1\/admin\/studies\/([^/]+)\/(.+)$/) ?? [];
   const study = studies.find((s) => s.id === id);
   if (study === undefined) return null;
+  const errors = (rmse) => ({ count: 197136, bias: rmse / 40, rmse, p999: 5 * rmse, max: 9 * rmse });
   const provenance = (condition) => ({
-    technique: condition === "mc" ? { technique: "mc", spp: 4096, seed: 7 } : { technique: "pa" },
     scene_sha256: "6a1f0c".padEnd(64, "3"),
-    size: [592, 333],
-    backend: "cpu",
-    renderer: "kelir-render 0.1.0",
-    error: { reference: "mc 65536 spp", rmse: condition === "mc" ? 0.00031234 : 0.0008217, max_error: 0.00412 },
+    ...(condition === "pa" ? { technique: "pa", table: "u32" } : { technique: "mc", spp: 1024, seed: 7 }),
+    ...{ version: "0.1.0", backend: "cpu", adapter: "2 threads", white: 812.25, size: [592, 333], pixel: "area", output: "still", camera: null },
+    error: { reference: { technique: "mc", spp: 65536, seed: 1 }, frames: [0], all: errors(condition === "pa" ? 2.4e-4 : 1.9e-4), penumbra: errors(condition === "pa" ? 8.217e-4 : 6.3e-4), floor: 7.9e-5 },
+    counts: { pixels: 197136, pixels_penumbra: 30512 },
   });
   const stimuli = stuff.trials.flatMap((t) => [
     { pair: `${t.block_id}-${t.pair_index + 1}`, condition: "pa", sha256: t.left.sha256, provenance: provenance("pa") },
