@@ -67,7 +67,7 @@ export function flatten(value: unknown, name = ""): Array<[string, unknown]> {
 
 /** A still as it is; an animation as its first frame, with a button that plays it. */
 function picture({ sha256, pair, condition }: Stimulus): HTMLElement {
-  const image = h("img", { alt: `${pair}, ${condition}`, loading: "lazy", src: address(sha256) });
+  const image = h("img", { alt: `${pair}, ${condition}`, decoding: "async", src: address(sha256) });
   const holder = h("div", { class: "picture" }, image);
   image.addEventListener(
     "error",
