@@ -31,7 +31,7 @@ fn main() -> ExitCode {
 
 fn run() -> Result<(), String> {
     let out = PathBuf::from(env("OUT_DIR")?).join("web");
-    let web = Path::new(&env("CARGO_MANIFEST_DIR")?).join("../../web");
+    let web = Path::new(&env("CARGO_MANIFEST_DIR")?).ancestors().nth(2).unwrap_or(Path::new("/")).join("web");
 
     println!("cargo::rerun-if-env-changed=KELIR_WEB_DIST");
     if let Some(dist) = std::env::var_os("KELIR_WEB_DIST").map(PathBuf::from) {

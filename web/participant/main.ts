@@ -8,7 +8,7 @@ import { describeDisplay, measureRefresh } from "./display.ts";
 import { inkOn, srgbCode } from "./layout.ts";
 import { Outbox } from "./outbox.ts";
 import { position, remaining, withAnswered } from "./plan.ts";
-import { openLoader, Unusable } from "./stimuli.ts";
+import { openLoader, type Pair, Unusable } from "./stimuli.ts";
 import { openStore, sessionKey } from "./storage.ts";
 import { openTabs } from "./tabs.ts";
 import TextPage, { showPage } from "./text-page.ts";
@@ -115,7 +115,7 @@ class Session {
   #state: api.State | null = null;
   #lost = false;
   readonly #loader = openLoader((waiting) =>
-    say("pictures", waiting ? "The pictures take a little longer to arrive. Nothing is lost; please wait." : null),
+    say("pictures", waiting ? "The pictures take longer to arrive. Nothing is lost; it goes on by itself." : null),
   );
   #refresh: Promise<number | null> | null = null;
 
@@ -133,16 +133,15 @@ class Session {
     });
     if (this.#state?.status === "completed") return this.#finish();
     void this.outbox.flush();
+    rescue();
 
     const jsPsych = initJsPsych({ display_element: display });
-    const { texts, title, question, estimated_minutes } = this.study;
-    const minutes = Math.max(1, Math.round(estimated_minutes));
+    const { texts, title, question } = this.study;
     const consent = {
       type: TextPage,
       heading: title,
       content: () => [
         ...paragraphs(texts.welcome),
-        h("p", { class: "facts" }, `About ${minutes} ${minutes === 1 ? "minute" : "minutes"}.`),
         h("h2", {}, "Your consent"),
         ...paragraphs(texts.consent),
         h("p", { class: "quiet" }, "If you would rather not take part, close this page: nothing has been stored. ", printLink()),
@@ -181,7 +180,7 @@ class Session {
       right: () => current().right.sha256,
       width: () => current().width,
       height: () => current().height,
-      load: () => this.#loader.load(current()),
+      load: () => this.#load(current()),
       refresh_period: () => this.#measure(),
       on_onset: () => {
         const [now, next] = this.#remaining();
@@ -220,6 +219,17 @@ class Session {
 
   #remaining(): api.Trial[] {
     return remaining(this.#trials, this.outbox.indices);
+  }
+
+  /** A pair's pictures; says so when they are long in coming, for the screen is empty until then. */
+  async #load(trial: api.Trial): Promise<Pair> {
+    const slow = setTimeout(() => say("pictures", "The next pictures are on their way; please wait a moment."), 1000);
+    try {
+      return await this.#loader.load(trial);
+    } finally {
+      clearTimeout(slow);
+      say("pictures", null);
+    }
   }
 
   #measure(): Promise<number | null> {
@@ -298,7 +308,9 @@ class Session {
     } catch (error) {
       clearTimeout(slow);
       if (!(error instanceof Refused) || error.code !== "incomplete") throw error;
-      // The server misses a trial that we believed stored: its word counts, and a reload shows the trial again.
+      // The server misses a trial that we believed stored. Its word counts: where its plan shows the gap, a reload asks again.
+      this.#state = await persist(() => api.fetchState(who));
+      if (this.#remaining().length === 0) throw error;
       return location.reload();
     }
     clearTimeout(slow);
@@ -339,6 +351,19 @@ class Session {
       `If trying again does not help, please send the researchers this text: ${reasons} Session ${this.#who?.session_id ?? ""}.`,
     ]);
     showPage(screen, "One thing is missing", content, button);
+  }
+}
+
+/** Sends what earlier visits on this device left behind, such as another participant's last answers before the line went. */
+function rescue(): void {
+  for (const other of store.keys("kelir:session:")) {
+    const who = store.read<Remembered>(other);
+    if (other === key || who === null) continue;
+    const left = new Outbox(`kelir:outbox:${who.session_id}`, store, {
+      ...{ onStored: () => {}, onLine: () => {}, setTimer: (run, ms) => setTimeout(run, ms), clearTimer: (timer) => clearTimeout(timer as number), random: Math.random },
+      send: (index, answer) => api.putAnswer(who, index, answer),
+    });
+    if (left.waiting.length > 0) void left.flush();
   }
 }
 

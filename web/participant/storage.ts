@@ -6,6 +6,8 @@ export interface Store {
   read<T>(key: string): T | null;
   write(key: string, value: unknown): void;
   remove(key: string): void;
+  /** Every key that begins so. */
+  keys(prefix: string): string[];
 }
 
 /** Wraps a `Storage`; a browser that refuses (private windows, full disks) falls back to memory, and says so in `durable`. */
@@ -49,6 +51,10 @@ export function openStore(storage: () => Storage): Store {
       } catch {
         // nothing to remove from
       }
+    },
+    keys(prefix) {
+      const kept = disk === null ? [] : Array.from({ length: disk.length }, (_, i) => disk?.key(i) ?? "");
+      return [...new Set([...kept, ...memory.keys()])].filter((key) => key.startsWith(prefix));
     },
   };
 }

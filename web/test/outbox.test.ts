@@ -12,7 +12,11 @@ const answer = (choice: "left" | "right"): Answer => ({ choice, rt: 1, onset: 1 
 function disk(): Storage {
   const map = new Map<string, string>();
   return {
-    ...{ length: 0, clear: () => map.clear(), key: () => null },
+    get length() {
+      return map.size;
+    },
+    clear: () => map.clear(),
+    key: (i) => [...map.keys()][i] ?? null,
     getItem: (k) => map.get(k) ?? null,
     setItem: (k, v) => void map.set(k, v),
     removeItem: (k) => void map.delete(k),
@@ -147,6 +151,16 @@ test("the server's own waiting time is respected", async () => {
   outbox.put(0, answer("left"));
   await settle();
   assert.deepEqual([...timers.values()].map((t) => t.ms), [20_000]);
+});
+
+test("a store lists its keys by their beginning", () => {
+  const store = openStore(() => disks);
+  store.write("a:1", 1);
+  store.write("a:2", 2);
+  store.write("b:1", 3);
+  assert.deepEqual(store.keys("a:").sort(), ["a:1", "a:2"]);
+  store.remove("a:1");
+  assert.deepEqual(store.keys("a:"), ["a:2"]);
 });
 
 test("a stopped outbox sends nothing more", async () => {

@@ -161,6 +161,35 @@ test("a lost line: the sentence is calm and true, the study goes on, all arrives
   assert.equal(await v.page.locator("#notice").textContent(), "");
 });
 
+test("what one participant left unsent goes out with the next one's visit", async (t) => {
+  let down = false;
+  const v = await visit(t, { query: "?PROLIFIC_PID=a", fault: ({ method }) => (down && method === "PUT" ? "hang up" : null) });
+  await begin(v);
+  down = true;
+  await answer(v, 0, 1, "right");
+  await position(v.page, 1);
+  await v.page.goto("about:blank");
+  assert.deepEqual(stored(v.mock), [[]]);
+  down = false;
+  await v.page.goto(v.url.replace("=a", "=b"));
+  await v.hook("consent-agree").click();
+  await v.hook("start").waitFor();
+  assert.deepEqual(stored(v.mock), [[[0, "right"]], []]);
+});
+
+test("pictures that are long in coming are announced", async (t) => {
+  const v = await visit(t);
+  await v.page.route("**/stimuli/**", async (route) => {
+    await new Promise((resolve) => setTimeout(resolve, 2500));
+    await route.continue();
+  });
+  await v.hook("consent-agree").click();
+  await v.hook("start").click();
+  await v.page.getByText("The next pictures are on their way").waitFor();
+  await position(v.page, 0);
+  assert.equal(await v.page.locator("#notice").textContent(), "");
+});
+
 test("a lost acknowledgement costs nothing and doubles nothing", async (t) => {
   const lost = new Set();
   const fault = ({ method, path }) => (method === "PUT" && !lost.has(path) && lost.add(path) ? { after: true } : null);
