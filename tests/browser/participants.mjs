@@ -26,7 +26,7 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
   const trials = [];
   const shot = async (label) => {
     const file = join(task.shots, `participant-${label}-${viewport.width}x${viewport.height}.png`);
-    await page.screenshot({ path: file, fullPage: true });
+    await page.screenshot({ path: file });
   };
   const press = (locator) => (input === "keyboard" ? locator.press("Enter") : input === "touch" ? locator.tap() : locator.click());
 
@@ -54,8 +54,7 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
       await shot("thanks");
       code = (await page.getByTestId("completion-code").textContent()).trim();
     } else {
-      const names = { "consent-agree": "consent", start: "instructions", continue: trials.length ? "debriefing" : "welcome" };
-      await shot(names[state]);
+      await shot({ "consent-agree": "welcome", start: "instructions" }[state]);
       const button = page.getByTestId(state);
       await press(button);
       await button.waitFor({ state: "detached" });
@@ -67,7 +66,7 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
 
 /** The test hook of the screen that is shown now. */
 async function current(page) {
-  const hooks = ["continue", "consent-agree", "start", "choice-left", "completion-code"];
+  const hooks = ["consent-agree", "start", "choice-left", "completion-code"];
   const shown = page.locator(hooks.map((hook) => `[data-testid="${hook}"]:visible`).join(","));
   await shown.first().waitFor({ timeout: 60_000 });
   return shown.first().getAttribute("data-testid");

@@ -109,7 +109,7 @@ fn what_a_technique_cannot_draw_is_refused() {
     let good = scene(folder.path(), str::to_owned);
     refused(
         &["render", &good, "--technique", "pa", "--size", "100x100", "-o", out.to_str().unwrap()],
-        &["100", "aspect"],
+        &["size = 100x100", "56 of height"],
     );
     refused(
         &["render", &good, "--technique", "pa", "--size", "wide", "-o", out.to_str().unwrap()],

@@ -11,7 +11,7 @@ use crate::limits::{self, COORDINATE_M, LENGTH_M, RADIANCE};
 use crate::load::Loader;
 use crate::puppet::bitmap;
 use crate::read::Node;
-use crate::theatre::{Albedo, Ambient, Emitter, EmitterShape, Exposure, Lamp, LinearImage, Screen};
+use crate::theatre::{Albedo, Ambient, Emitter, EmitterShape, Exposure, LinearImage, Screen};
 use crate::weave::Weave;
 
 /// A length that has area when squared.
@@ -121,7 +121,8 @@ fn albedo_image(node: &Node, name: &str, loader: &Loader) -> Option<LinearImage>
     Some(LinearImage { width, height, rgb })
 }
 
-pub(crate) fn lamp(node: &Node) -> Option<Lamp> {
+/// The lamp's position and its emitters, each as far as it is sound: where puppets may hang depends on the position alone.
+pub(crate) fn lamp(node: &Node) -> Option<(Option<DVec3>, Option<Vec<Emitter>>)> {
     let mut fields = node.table()?;
     let position_m = fields.need("position_m", "the lamp's centre [x, y, z] in metres", lamp_position);
     let emitters = fields.need("emitters", "at least one [[lamp.emitters]]", |n| {
@@ -142,7 +143,7 @@ pub(crate) fn lamp(node: &Node) -> Option<Lamp> {
         twins.is_empty().then_some(emitters)
     });
     fields.done();
-    Some(Lamp { position_m: position_m?, emitters: emitters? })
+    Some((position_m, emitters))
 }
 
 fn emitter(node: &Node) -> Option<Emitter> {

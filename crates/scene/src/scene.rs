@@ -17,7 +17,7 @@ use crate::problem::{Problem, SceneErrors};
 use crate::puppet::read::{Entry, degrees, find_part, pose_deg, tilt};
 use crate::read::{Fields, Node, Source, canonical};
 use crate::staging::{Misplaced, Puppet, Staging};
-use crate::theatre::{Albedo, Ambient, Emitter, Exposure, Mask, Texels, Theatre};
+use crate::theatre::{Albedo, Ambient, Emitter, Exposure, Lamp, Mask, Texels, Theatre};
 use crate::timeline::{self, Driven, Target, Timeline};
 
 /// A valid scene: what is drawn, still or moving.
@@ -122,7 +122,7 @@ fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option
     let root = source.root(&table);
     let mut sections = root.table()?;
     let screen = sections.need("screen", "the [screen] section", |n| fields::screen(n, name, &loader));
-    let lamp = sections.need("lamp", "the [lamp] section", fields::lamp);
+    let (lamp_m, emitters) = sections.need("lamp", "the [lamp] section", fields::lamp).unwrap_or_default();
     let ambient = sections.optional("ambient", Ambient::None, fields::ambient);
     let mut white = None;
     let exposure = sections.optional("exposure", Exposure::Auto, |n| {
@@ -136,17 +136,19 @@ fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option
     };
     sections.done();
 
-    if let (Some(screen), Some(lamp), Some(ambient), Some(Exposure::Auto)) =
-        (&screen, &lamp, &ambient, exposure)
+    if let (Some(screen), Some(emitters), Some(ambient), Some(Exposure::Auto)) =
+        (&screen, &emitters, &ambient, exposure)
     {
-        check_light(&screen.albedo, &lamp.emitters, ambient, white.as_ref(), &root);
+        check_light(&screen.albedo, emitters, ambient, white.as_ref(), &root);
     }
-    let lamp = lamp?;
+    if let Some(lamp_m) = lamp_m {
+        check_still(lamp_m.z, &entries, &root);
+    }
+    let lamp = Lamp { position_m: lamp_m?, emitters: emitters? };
     let entries: Vec<Entry> = entries.into_iter().collect::<Option<_>>()?;
     let timeline = timeline?;
     let settings = entries.iter().map(|e| e.setting.clone()).collect();
     let staging = Staging { lamp_m: lamp.position_m, puppets: settings };
-    check_still(&staging, &entries, &root);
     if let Some(timeline) = &timeline {
         check_timeline(timeline, &staging, &entries, source);
     }
@@ -221,14 +223,15 @@ fn rule_of(misplaced: &Misplaced, lamp_z_m: f64) -> String {
     }
 }
 
-fn check_still(staging: &Staging, entries: &[Entry], root: &Node) {
+/// Where the puppets hang; those that were refused already have their own problems.
+fn check_still(lamp_z_m: f64, entries: &[Option<Entry>], root: &Node) {
     let nothing = nothing();
     let mut texels = 0usize;
-    for (setting, entry) in staging.puppets.iter().zip(entries) {
-        match entry.puppet.check(setting, staging.lamp_m.z, &nothing) {
+    for entry in entries.iter().flatten() {
+        match entry.puppet.check(&entry.setting, lamp_z_m, &nothing) {
             Ok(values) => texels = texels.saturating_add(values),
             Err(misplaced) => {
-                let rule = rule_of(&misplaced, staging.lamp_m.z);
+                let rule = rule_of(&misplaced, lamp_z_m);
                 let z = entry.position.as_ref().and_then(|n| n.array(3)?.pop());
                 let node = match misplaced {
                     Misplaced::Centre(_) => z.as_ref(),
