@@ -7,6 +7,7 @@
 
 pub mod albedo;
 pub mod ambient;
+pub mod bench;
 pub mod camera;
 pub mod encode;
 pub mod exposure;

@@ -9,6 +9,7 @@ use crate::View;
 use crate::albedo::{self, PixelAlbedo};
 use crate::encode::{Srgb, pack};
 use crate::irradiance::UnitRows;
+use crate::simd::multiversion;
 
 /// The lit screen and how much of its light each emitter gives.
 #[derive(Debug)]
@@ -22,8 +23,23 @@ pub struct Background {
     /// colour. Empty for `rest`.
     pub share: Vec<Vec<Vec<f32>>>,
     /// Display codes of the lit screen and the white they were made with.
-    encoded: Option<(f64, Vec<u32>)>,
+    encoded: Option<(f64, Codes)>,
 }
+
+/// Display codes; grey ones take a quarter of the memory, and copying them is bound by memory.
+#[derive(Debug)]
+enum Codes {
+    Grey(Vec<u8>),
+    Colour(Vec<u32>),
+}
+
+#[inline(always)]
+fn widen_generic(codes: &[u8], out: &mut [u32]) {
+    for (out, code) in out.iter_mut().zip(codes) {
+        *out = 0xff00_0000 | (u32::from(*code) * 0x01_0101);
+    }
+}
+multiversion! { fn widen(codes: &[u8], out: &mut [u32]) = widen_generic; }
 
 #[derive(Debug)]
 struct Key {
@@ -152,19 +168,25 @@ impl Background {
         if self.encoded.as_ref().is_some_and(|(w, _)| *w == white) {
             return true;
         }
-        let mut codes = self.encoded.take().map(|(_, codes)| codes).unwrap_or_default();
-        codes.resize(self.lit[0].len(), 0);
         let (srgb, scale) = (Srgb::get(), (1.0 / white) as f32);
-        let (r, g, b) = (self.lit(0), self.lit(1), self.lit(2));
-        codes.par_iter_mut().with_min_len(4096).enumerate().for_each(|(k, code)| {
-            *code = pack(srgb.code(r[k] * scale), srgb.code(g[k] * scale), srgb.code(b[k] * scale));
-        });
+        let code = |lit: &f32| srgb.code(lit * scale);
+        let (r, g, b) = (self.lit(0).par_iter(), self.lit(1).par_iter(), self.lit(2).par_iter());
+        let codes = if self.lit.len() == 1 {
+            Codes::Grey(r.with_min_len(4096).map(|r| code(r) as u8).collect())
+        } else {
+            let packed = |((r, g), b): ((&f32, &f32), &f32)| pack(code(r), code(g), code(b));
+            Codes::Colour(r.zip(g).zip(b).with_min_len(4096).map(packed).collect())
+        };
         self.encoded = Some((white, codes));
         false
     }
 
-    /// The lit screen's display codes, once [`encode`](Self::encode) has made them; empty before.
-    pub fn encoded(&self) -> &[u32] {
-        self.encoded.as_ref().map_or(&[], |(_, codes)| codes)
+    /// Writes the lit screen's display codes of `pixels`; [`encode`](Self::encode) must have made them.
+    pub fn copy_lit(&self, pixels: std::ops::Range<usize>, out: &mut [u32]) {
+        match &self.encoded {
+            Some((_, Codes::Grey(codes))) => widen(&codes[pixels], out),
+            Some((_, Codes::Colour(codes))) => out.copy_from_slice(&codes[pixels]),
+            None => {}
+        }
     }
 }

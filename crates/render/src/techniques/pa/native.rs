@@ -1,5 +1,6 @@
 //! PA on all cores.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -46,6 +47,17 @@ enum State {
     Lit,
     Dark,
     Penumbra,
+}
+
+/// What a tile's pixels need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// The lit screen, as it is.
+    Lit,
+    /// Nothing: every emitter is hidden and there is no other light.
+    Black,
+    /// Look-ups, or at least shading.
+    Shade,
 }
 
 /// Where finished pixels go.
@@ -100,8 +112,8 @@ impl Counts {
 struct Scratch {
     combined: Combined,
     states: Vec<State>,
-    /// One look-up's opacities, at sub-pixels.
-    opacity: Vec<f32>,
+    /// One look-up's transmittances, at sub-pixels.
+    one: Vec<f32>,
     /// Product of the planes' transmittances for one piece, at sub-pixels.
     product: Vec<f32>,
     /// Visibility of emitter e in channel c at `(e * channels + c) * width`.
@@ -287,13 +299,7 @@ impl Job<'_> {
     }
 
     /// State of look-up `l` in channel `c` over sub-pixel columns × rows, from the sum over every texel they touch.
-    fn classify(
-        &self,
-        l: usize,
-        c: usize,
-        columns: std::ops::Range<usize>,
-        rows: std::ops::Range<usize>,
-    ) -> State {
+    fn classify(&self, l: usize, c: usize, columns: Range<usize>, rows: Range<usize>) -> State {
         let (lookup, table) = (&self.plan.lookups[l], self.tables[l * self.plan.channels + c]);
         let x = lookup.x.touched(columns.clone(), table.width);
         let y = lookup.y.touched(rows.clone(), table.height);
@@ -326,13 +332,19 @@ impl Job<'_> {
         let entries = self.tables.len();
         let channels = self.plan.channels;
         scratch.states.clear();
+        scratch.states.resize(tiles * entries, State::Penumbra);
         for t in 0..tiles {
-            for e in 0..entries {
+            for e in (0..self.plan.lookups.len()).rev().flat_map(|l| l * channels..(l + 1) * channels) {
                 let (c, r) = (columns(t), &rows);
+                let known = |e: usize| scratch.states[t * entries + e];
+                let within =
+                    self.plan.lookups[e / channels].within.map(|l| known(l * channels + e % channels));
                 let state = if !skip {
                     State::Penumbra
                 } else if e % channels > 0 && std::ptr::eq(self.tables[e], self.tables[e - 1]) {
-                    scratch.states[t * entries + e - 1]
+                    known(e - 1)
+                } else if let Some(state) = within.filter(|state| *state != State::Penumbra) {
+                    state
                 } else {
                     self.classify(
                         e / channels,
@@ -341,43 +353,49 @@ impl Job<'_> {
                         r.start * sub..r.end * sub,
                     )
                 };
-                scratch.states.push(state);
+                scratch.states[t * entries + e] = state;
             }
         }
         let states = std::mem::take(&mut scratch.states);
         let mut counts = Counts::default();
-        // Runs of tiles of the same kind, row by row.
-        let lit = |t: usize| skip && states[t * entries..(t + 1) * entries].iter().all(|s| *s == State::Lit);
-        let dark = |t: usize| {
+        // Runs of tiles of the same kind, the same for every row: (kind, columns).
+        let kind = |t: usize| {
             let of = &states[t * entries..(t + 1) * entries];
-            skip && entries > 0
-                && of.iter().all(|s| *s == State::Dark)
-                && self.theatre.ambient == Ambient::None
-        };
-        for j in rows.clone() {
-            let mut t = 0;
-            while t < tiles {
-                let kind = (lit(t), dark(t));
-                let from = t;
-                while t < tiles && (lit(t), dark(t)) == kind {
-                    t += 1;
+            match () {
+                () if !skip => Kind::Shade,
+                () if of.iter().all(|s| *s == State::Lit) => Kind::Lit,
+                () if of.iter().all(|s| *s == State::Dark) && self.theatre.ambient == Ambient::None => {
+                    Kind::Black
                 }
-                let span = from * TILE[0]..(t * TILE[0]).min(w);
-                let at = (j - first) * w;
+                () => Kind::Shade,
+            }
+        };
+        let mut runs: Vec<(Kind, Range<usize>)> = Vec::new();
+        for t in 0..tiles {
+            match runs.last_mut() {
+                Some((last, run)) if *last == kind(t) => run.end = columns(t).end,
+                _ => runs.push((kind(t), columns(t))),
+            }
+        }
+        for j in rows.clone() {
+            let at = (j - first) * w;
+            for (kind, span) in &runs {
                 match (&mut band, kind) {
-                    (Band::Display { out, .. }, (true, _)) => {
-                        let lit = &self.background.encoded()[j * w..(j + 1) * w];
-                        out[at + span.start..at + span.end].copy_from_slice(&lit[span.clone()]);
+                    (Band::Display { out, .. }, Kind::Lit) => {
+                        let pixels = j * w + span.start..j * w + span.end;
+                        self.background.copy_lit(pixels, &mut out[at + span.start..at + span.end]);
                         counts.lit_copied += span.len() as u64;
                     }
-                    (Band::Display { out, .. }, (_, true)) => {
+                    (Band::Display { out, .. }, Kind::Black) => {
                         out[at + span.start..at + span.end].fill(pack(0, 0, 0));
                         counts.dark += span.len() as u64;
                     }
                     _ => {
-                        self.visibility(j, span.clone(), &states, scratch, &mut counts);
-                        self.shade(j, span.clone(), scratch);
-                        self.emit(j, at, span.clone(), scratch, &mut band);
+                        counts.looked_up += self.visibility(j, span.clone(), &states, scratch);
+                        if !self.emit_grey(j, at, span.clone(), scratch, &mut band) {
+                            self.shade(j, span.clone(), scratch);
+                            self.emit(j, at, span.clone(), scratch, &mut band);
+                        }
                         counts.penumbra += span.len() as u64;
                     }
                 }
@@ -387,19 +405,19 @@ impl Job<'_> {
         counts
     }
 
-    /// Opacities of one look-up in one channel (entry `e`) at the sub-pixels of `span` of sub-row `row`, into `scratch.opacity`.
-    fn opacity(
+    /// Transmittances of one look-up in one channel (entry `e`) at the sub-pixels of `span` of sub-row `row`.
+    fn transmittance(
         &self,
         e: usize,
         row: usize,
-        span: &std::ops::Range<usize>,
+        span: &Range<usize>,
         states: &[State],
-        scratch: &mut Scratch,
-        counts: &mut Counts,
-    ) {
+        combined: &mut Combined,
+        out: &mut [f32],
+    ) -> u64 {
         let (sub, entries) = (self.plan.sub, self.tables.len());
         let (lookup, table): (&Lookup, &Table) = (&self.plan.lookups[e / self.plan.channels], self.tables[e]);
-        scratch.opacity.resize(span.len() * sub, 0.0);
+        let mut boxes = 0;
         let mut x = span.start;
         while x < span.end {
             let from = x;
@@ -407,78 +425,123 @@ impl Job<'_> {
             while x < span.end && states[(x / TILE[0]) * entries + e] == state {
                 x = ((x / TILE[0] + 1) * TILE[0]).min(span.end);
             }
-            let out = &mut scratch.opacity[(from - span.start) * sub..(x - span.start) * sub];
+            let out = &mut out[(from - span.start) * sub..(x - span.start) * sub];
             match state {
-                State::Lit => out.fill(0.0),
-                State::Dark => out.fill(1.0),
+                State::Lit => out.fill(1.0),
+                State::Dark => out.fill(0.0),
                 State::Penumbra => {
-                    scratch.combined.combine(table, lookup, row, from * sub..x * sub);
-                    scratch.combined.look_up(lookup, from * sub..x * sub, out);
-                    counts.looked_up += out.len() as u64;
+                    combined.combine(table, lookup, row, from * sub..x * sub);
+                    combined.look_up(lookup, from * sub..x * sub, out);
+                    boxes += out.len() as u64;
                 }
             }
         }
+        boxes
     }
 
-    /// Visibilities of every emitter at the pixels of `span` of row `j`.
-    fn visibility(
-        &self,
-        j: usize,
-        span: std::ops::Range<usize>,
-        states: &[State],
-        scratch: &mut Scratch,
-        counts: &mut Counts,
-    ) {
-        let (plan, n, sub) = (self.plan, span.len(), self.plan.sub);
+    /// Visibilities of every emitter at the pixels of `span` of row `j`; returns how many boxes were looked up.
+    fn visibility(&self, j: usize, span: Range<usize>, states: &[State], scratch: &mut Scratch) -> u64 {
+        let (plan, n) = (self.plan, span.len());
         let (emitters, channels) = (self.theatre.lamp.emitters.len(), plan.channels);
-        let several = plan.planes.len() > 1;
-        let paper = matches!(self.theatre.ambient, Ambient::Paper { .. }) && several;
-        scratch.visibility.clear();
+        let own = matches!(self.theatre.ambient, Ambient::Paper { .. }) && plan.planes.len() > 1;
         scratch.visibility.resize(emitters * channels * n, 0.0);
-        if paper {
+        if own {
             scratch.own.clear();
             scratch.own.resize(plan.planes.len() * self.shades * n, 0.0);
         }
-        let mut weight_sum = vec![0f32; emitters * n];
-        for (p, piece) in plan.pieces.iter().enumerate() {
-            let skipped = !self.layers && self.theatre.lamp.emitters[piece.emitter].radiance == [0.0; 3];
-            if skipped && self.view.skip {
-                scratch.visibility[piece.emitter * channels * n..][..channels * n].fill(1.0);
-                weight_sum[piece.emitter * n..][..n].fill(1.0);
-                continue;
-            }
-            self.piece_weights(p, j, &span, &mut scratch.piece);
-            weight_sum[piece.emitter * n..][..n].iter_mut().zip(&scratch.piece).for_each(|(s, w)| *s += w);
-            for c in 0..channels {
-                for row in j * sub..(j + 1) * sub {
-                    scratch.product.clear();
-                    scratch.product.resize(n * sub, 1.0);
-                    for (l, lookup) in plan.lookups.iter().enumerate().filter(|(_, l)| l.piece == p) {
-                        self.opacity(l * channels + c, row, &span, states, scratch, counts);
-                        scratch.product.iter_mut().zip(&scratch.opacity).for_each(|(v, o)| *v *= 1.0 - o);
-                        if paper {
-                            self.add_own(lookup.plane, piece.emitter, c, j, &span, scratch);
-                        }
-                    }
-                    let sum = &mut scratch.visibility[(piece.emitter * channels + c) * n..][..n];
-                    add_means(&scratch.product, sub, &scratch.piece, sum);
-                }
-            }
-        }
-        let rows = sub as f32;
+        let mut boxes = 0;
         for e in 0..emitters {
+            let dark = !self.layers && self.theatre.lamp.emitters[e].radiance == [0.0; 3];
             for c in 0..channels {
-                let sum = &mut scratch.visibility[(e * channels + c) * n..][..n];
-                let weights = &weight_sum[e * n..][..n];
-                if weights.iter().any(|w| *w != 1.0) || sub > 1 {
-                    sum.iter_mut().zip(weights).for_each(|(v, w)| *v = (*v / (w * rows)).min(1.0));
+                let mut rows = std::mem::take(&mut scratch.visibility);
+                let row = &mut rows[(e * channels + c) * n..][..n];
+                if dark && self.view.skip {
+                    row.fill(1.0);
+                } else if plan.sub == 1 && !own && plan.pieces.len() == emitters {
+                    boxes += self.whole(e, c, j, &span, states, scratch, row);
+                } else {
+                    boxes += self.pieced(e, c, j, &span, states, scratch, row);
                 }
+                scratch.visibility = rows;
             }
         }
+        boxes
+    }
+
+    /// Visibility of an emitter in one piece: the product of its planes' transmittances.
+    #[allow(clippy::too_many_arguments)]
+    fn whole(
+        &self,
+        e: usize,
+        c: usize,
+        j: usize,
+        span: &Range<usize>,
+        states: &[State],
+        scratch: &mut Scratch,
+        out: &mut [f32],
+    ) -> u64 {
+        let channels = self.plan.channels;
+        let mut boxes = 0;
+        let mut first = true;
+        for (l, _) in self.plan.lookups.iter().enumerate().filter(|(_, l)| l.piece == e) {
+            if first {
+                boxes += self.transmittance(l * channels + c, j, span, states, &mut scratch.combined, out);
+            } else {
+                let one = &mut scratch.one;
+                one.resize(span.len(), 0.0);
+                boxes += self.transmittance(l * channels + c, j, span, states, &mut scratch.combined, one);
+                multiply(out, one);
+            }
+            first = false;
+        }
+        if first {
+            out.fill(1.0);
+        }
+        boxes
+    }
+
+    /// The same of an emitter in pieces, or of pixels in parts.
+    #[allow(clippy::too_many_arguments)]
+    fn pieced(
+        &self,
+        e: usize,
+        c: usize,
+        j: usize,
+        span: &Range<usize>,
+        states: &[State],
+        scratch: &mut Scratch,
+        out: &mut [f32],
+    ) -> u64 {
+        let (plan, n, sub) = (self.plan, span.len(), self.plan.sub);
+        let own = !scratch.own.is_empty();
+        let mut boxes = 0;
+        let mut weights = vec![0f32; n];
+        out.fill(0.0);
+        for p in (0..plan.pieces.len()).filter(|p| plan.pieces[*p].emitter == e) {
+            self.piece_weights(p, j, span, &mut scratch.piece);
+            weights.iter_mut().zip(&scratch.piece).for_each(|(s, w)| *s += w);
+            for row in j * sub..(j + 1) * sub {
+                scratch.product.clear();
+                scratch.product.resize(n * sub, 1.0);
+                for (l, lookup) in plan.lookups.iter().enumerate().filter(|(_, l)| l.piece == p) {
+                    scratch.one.resize(n * sub, 0.0);
+                    let entry = l * plan.channels + c;
+                    boxes +=
+                        self.transmittance(entry, row, span, states, &mut scratch.combined, &mut scratch.one);
+                    multiply(&mut scratch.product, &scratch.one);
+                    if own {
+                        self.add_own(lookup.plane, e, c, j, span, scratch);
+                    }
+                }
+                add_means(&scratch.product, sub, &scratch.piece, out);
+            }
+        }
+        out.iter_mut().zip(&weights).for_each(|(v, w)| *v = (*v / (w * sub as f32)).min(1.0));
+        boxes
     }
 
     /// How much piece `p` counts at each pixel of `span`; pieces of one emitter are divided by their sum later.
-    fn piece_weights(&self, p: usize, j: usize, span: &std::ops::Range<usize>, out: &mut Vec<f32>) {
+    fn piece_weights(&self, p: usize, j: usize, span: &Range<usize>, out: &mut Vec<f32>) {
         let piece = &self.plan.pieces[p];
         out.clear();
         match self.weights {
@@ -503,7 +566,7 @@ impl Job<'_> {
         emitter: usize,
         c: usize,
         j: usize,
-        span: &std::ops::Range<usize>,
+        span: &Range<usize>,
         scratch: &mut Scratch,
     ) {
         let (n, sub, w) = (span.len(), self.plan.sub, self.view.size[0]);
@@ -523,14 +586,51 @@ impl Job<'_> {
                     let others = (0..emitters).filter(|e| *e != rest);
                     1.0 - others.map(|e| self.background.share(e, shade)[at]).sum::<f32>()
                 };
-                let mean: f32 = scratch.opacity[k * sub..(k + 1) * sub].iter().sum();
+                let mean: f32 = scratch.one[k * sub..(k + 1) * sub].iter().map(|v| 1.0 - v).sum();
                 *own += share * mean * scratch.piece[k];
             }
         }
     }
 
+    /// Shading and display codes of the plainest scenes in one pass: grey light, one or two emitters, one plane where ambient
+    /// light asks for its distance. Same bits as [`shade`](Self::shade) and [`emit`](Self::emit); false where it does not apply.
+    fn emit_grey(&self, j: usize, at: usize, span: Range<usize>, scratch: &Scratch, band: &mut Band) -> bool {
+        let Band::Display { white, out } = band else { return false };
+        let (n, emitters, rest) = (span.len(), self.theatre.lamp.emitters.len(), self.background.rest);
+        let pale = match (self.theatre.ambient, &self.plan.planes[..]) {
+            (Ambient::None, _) => 0.0,
+            (Ambient::Paper { k_d_m, s }, [p]) => {
+                ambient::share(0.0, self.plan.distance_m[*p], k_d_m, s[0]) as f32
+            }
+            _ => return false,
+        };
+        if self.shades > 1 || self.background.lit.len() > 1 || emitters > 2 {
+            return false;
+        }
+        let pixels = j * self.view.size[0] + span.start..j * self.view.size[0] + span.end;
+        let row = |e: usize| &scratch.visibility[e * n..][..n];
+        let lit = &self.background.lit(0)[pixels.clone()];
+        let out = &mut out[at + span.start..at + span.end];
+        let (srgb, scale) = (Srgb::get(), (1.0 / *white) as f32);
+        if emitters == 1 {
+            grey_one(srgb, lit, row(0), pale, scale, out);
+        } else {
+            grey_two(
+                srgb,
+                lit,
+                row(rest),
+                row(1 - rest),
+                &self.background.share(1 - rest, 0)[pixels],
+                pale,
+                scale,
+                out,
+            );
+        }
+        true
+    }
+
     /// Shading factors X of the pixels of `span`: L = lit · X.
-    fn shade(&self, j: usize, span: std::ops::Range<usize>, scratch: &mut Scratch) {
+    fn shade(&self, j: usize, span: Range<usize>, scratch: &mut Scratch) {
         let (n, channels) = (span.len(), self.plan.channels);
         let emitters = self.theatre.lamp.emitters.len();
         let row = j * self.view.size[0] + span.start;
@@ -561,7 +661,7 @@ impl Job<'_> {
     }
 
     /// Writes the pixels of `span` of row `j`, which starts at `at` in the band.
-    fn emit(&self, j: usize, at: usize, span: std::ops::Range<usize>, scratch: &Scratch, band: &mut Band) {
+    fn emit(&self, j: usize, at: usize, span: Range<usize>, scratch: &Scratch, band: &mut Band) {
         let n = span.len();
         let row = j * self.view.size[0];
         let pixels = row + span.start..row + span.end;
@@ -606,6 +706,47 @@ fn add_means(fine: &[f32], sub: usize, weights: &[f32], sum: &mut [f32]) {
             *s += w * (v.iter().sum::<f32>() / sub as f32);
         }
     }
+}
+
+#[inline(always)]
+fn multiply_generic(product: &mut [f32], by: &[f32]) {
+    for (p, b) in product.iter_mut().zip(by) {
+        *p *= b;
+    }
+}
+multiversion! { fn multiply(product: &mut [f32], by: &[f32]) = multiply_generic; }
+
+#[inline(always)]
+fn grey_one_generic(srgb: &Srgb, lit: &[f32], rest: &[f32], pale: f32, scale: f32, out: &mut [u32]) {
+    for ((out, lit), x) in out.iter_mut().zip(lit).zip(rest) {
+        let x = x + (1.0 - x) * pale;
+        *out = 0xff00_0000 | (srgb.code(lit * x * scale) * 0x01_0101);
+    }
+}
+multiversion! {
+    fn grey_one(srgb: &Srgb, lit: &[f32], rest: &[f32], pale: f32, scale: f32, out: &mut [u32]) = grey_one_generic;
+}
+
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+fn grey_two_generic(
+    srgb: &Srgb,
+    lit: &[f32],
+    rest: &[f32],
+    other: &[f32],
+    share: &[f32],
+    pale: f32,
+    scale: f32,
+    out: &mut [u32],
+) {
+    for ((((out, lit), rest), other), share) in out.iter_mut().zip(lit).zip(rest).zip(other).zip(share) {
+        let x = rest + share * (other - rest);
+        let x = x + (1.0 - x) * pale;
+        *out = 0xff00_0000 | (srgb.code(lit * x * scale) * 0x01_0101);
+    }
+}
+multiversion! {
+    fn grey_two(srgb: &Srgb, lit: &[f32], rest: &[f32], other: &[f32], share: &[f32], pale: f32, scale: f32, out: &mut [u32]) = grey_two_generic;
 }
 
 #[inline(always)]

@@ -36,6 +36,8 @@ pub struct Lookup {
     pub unit: f64,
     /// From fixed-point sums to mean opacity.
     pub norm: f64,
+    /// A later look-up of the same plane whose boxes contain this one's: what is lit or dark there is so here.
+    pub within: Option<usize>,
 }
 
 /// Everything but the pixels.
@@ -146,8 +148,10 @@ impl Plan {
                 Pixel::Area => (at(1, 1) - at(0, 0)).abs(),
                 Pixel::Centre => DVec2::ZERO,
             };
-            let x = Windows::new(size[0], |i| at(i, 0).x, sides.x, grid[0], pixel.x);
-            let y = Windows::new(size[1], |j| at(0, j).y, sides.y, grid[1], pixel.y);
+            let (x, y) = rayon::join(
+                || Windows::new(size[0], |i| at(i, 0).x, sides.x, grid[0], pixel.x),
+                || Windows::new(size[1], |j| at(0, j).y, sides.y, grid[1], pixel.y),
+            );
             largest = largest.max((sides.x + pixel.x + 2.0) * sides.y.max(1.0) * max_code);
             self.lookups.push(Lookup {
                 plane: p,
@@ -157,6 +161,7 @@ impl Plan {
                 shift: 32,
                 unit: sides.y.min(1.0),
                 norm: 0.0,
+                within: None,
             });
         }
         let off = self.lookups[first..].iter().all(|l| {
@@ -174,6 +179,14 @@ impl Plan {
             lookup.shift = if self.wide[p] { (64 - bits).min(32) } else { 32 };
             let scale = 2f64.powi(lookup.shift as i32) / lookup.unit;
             lookup.norm = 1.0 / (lookup.x.width * lookup.y.width * max_code * scale);
+        }
+        for l in first..self.lookups.len() {
+            let contains = |m: &usize| {
+                let (one, other) =
+                    (&self.pieces[self.lookups[l].piece], &self.pieces[self.lookups[*m].piece]);
+                one.centre_m == other.centre_m && (0..2).all(|axis| one.size_m[axis] <= other.size_m[axis])
+            };
+            self.lookups[l].within = (l + 1..self.lookups.len()).find(contains);
         }
         self.planes.push(p);
         self.channels = self.channels.max(plane.mask.channels);

@@ -3,7 +3,7 @@
 use kelir_scene::{Mask, Texels};
 use rayon::prelude::*;
 
-use crate::simd::multiversion;
+use crate::simd::{Isa, multiversion};
 
 /// Prefix sums of one channel's opacity codes (`max_code − code`): entry (x, y) is the sum over texels left of x and above y.
 ///
@@ -189,37 +189,51 @@ fn columns<C: Code>(row: &[C], totals: &mut [u32]) {
     }
 }
 
-/// Texels are prefixed eight at a time so that the running sum is not one long chain of additions.
 #[inline(always)]
 fn row<C: Code, S: Sum>(texels: &[C], above: &[S], out: &mut [S]) {
     let n = texels.len();
-    let (above, out_all) = (&above[..n + 1], &mut out[..n + 1]);
-    out_all[0] = S::default();
-    let (above, out) = (&above[1..], &mut out_all[1..]);
-    let mut running = 0u32;
+    let (above, out) = (&above[..n + 1], &mut out[..n + 1]);
+    out[0] = S::default();
+    row_from(texels, &above[1..], 0, &mut out[1..]);
+}
+
+#[inline(always)]
+fn row_from<C: Code, S: Sum>(texels: &[C], above: &[S], before: u32, out: &mut [S]) {
+    let mut running = before;
+    for ((out, above), texel) in out.iter_mut().zip(above).zip(texels) {
+        running = running.wrapping_add(texel.opacity());
+        *out = above.plus(S::of(running));
+    }
+}
+
+/// The commonest row, sixteen texels at a time: prefix sums by four shifted additions, then the sum so far and the row above.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+fn row_avx512(texels: &[u8], above: &[u32], out: &mut [u32]) {
+    use std::arch::x86_64::*;
+    let n = texels.len();
+    assert!(above.len() > n && out.len() > n);
+    out[0] = 0;
     let whole = n - n % 16;
-    for ((texels, above), out) in
-        texels[..whole].chunks_exact(16).zip(above.chunks_exact(16)).zip(out.chunks_exact_mut(16))
-    {
-        let mut p = [0u32; 16];
-        for (p, t) in p.iter_mut().zip(texels) {
-            *p = t.opacity();
+    let (zero, last, ones) = (_mm512_setzero_si512(), _mm512_set1_epi32(15), _mm_set1_epi8(-1));
+    let mut running = zero;
+    for at in (0..whole).step_by(16) {
+        // SAFETY: at + 16 ≤ n, and both rows hold n + 1 sums.
+        unsafe {
+            let codes = _mm_xor_si128(_mm_loadu_si128(texels.as_ptr().add(at).cast()), ones);
+            let mut p = _mm512_cvtepu8_epi32(codes);
+            p = _mm512_add_epi32(p, _mm512_alignr_epi32::<15>(p, zero));
+            p = _mm512_add_epi32(p, _mm512_alignr_epi32::<14>(p, zero));
+            p = _mm512_add_epi32(p, _mm512_alignr_epi32::<12>(p, zero));
+            p = _mm512_add_epi32(p, _mm512_alignr_epi32::<8>(p, zero));
+            let sum = _mm512_add_epi32(p, running);
+            let over = _mm512_loadu_si512(above.as_ptr().add(at + 1).cast());
+            _mm512_storeu_si512(out.as_mut_ptr().add(at + 1).cast(), _mm512_add_epi32(sum, over));
+            running = _mm512_add_epi32(running, _mm512_permutexvar_epi32(last, p));
         }
-        for step in [1, 2, 4, 8] {
-            let before = p;
-            for i in step..16 {
-                p[i] = before[i] + before[i - step];
-            }
-        }
-        for i in 0..16 {
-            out[i] = above[i].plus(S::of(p[i].wrapping_add(running)));
-        }
-        running += p[15];
     }
-    for i in whole..n {
-        running += texels[i].opacity();
-        out[i] = above[i].plus(S::of(running));
-    }
+    let before = _mm512_cvtsi512_si32(running) as u32;
+    row_from(&texels[whole..], &above[whole + 1..], before, &mut out[whole + 1..]);
 }
 
 macro_rules! loops {
@@ -240,5 +254,67 @@ macro_rules! loops {
         )*
     };
 }
-loops!(u8, columns_u8; u32, row_u8_u32; u64, row_u8_u64);
+loops!(u8, columns_u8; u64, row_u8_u64);
 loops!(u16, columns_u16; u32, row_u16_u32; u64, row_u16_u64);
+
+multiversion! { fn row_u8_u32(texels: &[u8], above: &[u32], out: &mut [u32]) = row::<u8, u32>; }
+impl AddRow<u8> for u32 {
+    fn add_row(texels: &[u8], above: &[Self], out: &mut [Self]) {
+        #[cfg(target_arch = "x86_64")]
+        if Isa::detect() == Isa::Avx512 {
+            // SAFETY: detected on this machine.
+            return unsafe { row_avx512(texels, above, out) };
+        }
+        row_u8_u32(texels, above, out);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every box of a small mask, and random boxes of a large one, against plain sums.
+    #[test]
+    fn boxes_hold_what_they_hold() {
+        for (w, h, channels) in [(1, 1, 1), (7, 5, 1), (33, 18, 3), (400, 301, 1)] {
+            let code = |k: usize| (k.wrapping_mul(2_654_435_761) >> 11) as u16;
+            let len = w * h * channels;
+            let eight = Mask::new(w, h, channels, Texels::U8((0..len).map(|k| code(k) as u8).collect()));
+            let sixteen = Mask::new(w, h, channels, Texels::U16((0..len).map(code).collect()));
+            for (mask, wide) in [(&eight, false), (&eight, true), (&sixteen, false), (&sixteen, true)] {
+                for c in 0..channels {
+                    let table = Table::new(mask, c, wide, None);
+                    let opacity = |x, y| {
+                        (f64::from(mask.max_code()) * (1.0 - mask.transmittance(c, x, y))).round() as u64
+                    };
+                    for k in 0..50 {
+                        let (x0, y0) = (code(k) as usize % w, code(k + 99) as usize % h);
+                        let x = [x0, x0 + 1 + code(k + 7) as usize % (w - x0)];
+                        let y = [y0, y0 + 1 + code(k + 3) as usize % (h - y0)];
+                        let plain: u64 = (y[0]..y[1])
+                            .flat_map(|y| (x[0]..x[1]).map(move |x| (x, y)))
+                            .map(|(x, y)| opacity(x, y))
+                            .sum();
+                        let expected = if wide { plain } else { plain & 0xffff_ffff };
+                        assert_eq!(table.sum(x, y), expected, "{w}x{h} {x:?} {y:?} wide {wide}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// A table whose entries wrap still knows every box under 2³².
+    #[test]
+    fn wrap_around_cancels() {
+        let (w, h) = (4200, 4200);
+        let mask = Mask::new(w, h, 1, Texels::U8(vec![0; w * h]));
+        let table = Table::new(&mask, 0, false, None);
+        let Sums::U32(sums) = &table.sums else { panic!("u32 asked for") };
+        let last = sums[sums.len() - 1];
+        assert!(u64::from(last) != (w * h * 255) as u64, "no wrap-around, nothing tested");
+        assert_eq!(table.sum([4000, 4200], [3900, 4200]), 200 * 300 * 255);
+        assert_eq!(table.sum([0, 4100], [0, 4100]), 4100 * 4100 * 255);
+        // The negative control: beyond 2³² the box is wrong.
+        assert_ne!(table.sum([0, w], [0, h]), (w * h * 255) as u64);
+    }
+}

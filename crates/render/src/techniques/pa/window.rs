@@ -9,6 +9,8 @@
 //!
 //! Everything is measured from the box's centre, so that a box of 1e-7 texels is as exact as one of a hundred.
 
+use crate::simd::multiversion;
+
 /// Texels that an end spread over `pixel` texels can touch.
 pub fn reach(pixel: f64) -> usize {
     pixel.ceil() as usize + 1
@@ -21,24 +23,37 @@ fn ramp(t: f64) -> f64 {
     0.5 * inside * inside + (t - 1.0).max(0.0)
 }
 
-/// Writes the `before.len()` weights of an end at `texel + offset` and returns its first texel; `pixel` is the pixel's
+/// Ends at `centres + offset`: the first texel of each, clamped to [−reach, size], and `reach` planes of weights; `pixel` is the pixel's
 /// width in texels, 0 for a point.
 #[inline(always)]
-pub fn end(texel: f64, offset: f64, pixel: f64, before: &mut [f64]) -> i64 {
-    let shift = (offset - 0.5 * pixel).floor();
-    let from = offset - 0.5 * pixel - shift;
-    if pixel > 0.0 {
-        let per = 1.0 / pixel;
-        for (k, g) in before.iter_mut().enumerate() {
-            let t = from - k as f64;
-            *g = (ramp(t + pixel) - ramp(t)) * per;
-        }
-    } else {
-        for (k, g) in before.iter_mut().enumerate() {
-            *g = (from - k as f64).clamp(0.0, 1.0);
+fn ends_generic(
+    centres: &[f64],
+    offset: f64,
+    pixel: f64,
+    size: usize,
+    texels: &mut [i32],
+    before: &mut [f64],
+) {
+    let count = centres.len();
+    let reach = before.len() / count;
+    let (first, last) = (-(reach as f64), size as f64);
+    let texels = &mut texels[..count];
+    for i in 0..count {
+        let texel = centres[i].floor();
+        let end = centres[i] - texel + offset - 0.5 * pixel;
+        // Outside the grid all texels are clear, so where exactly an end lies there does not matter.
+        texels[i] = (texel + end.floor()).clamp(first, last) as i32;
+    }
+    for (k, before) in before.chunks_exact_mut(count).enumerate() {
+        for i in 0..count {
+            let end = centres[i] - centres[i].floor() + offset - 0.5 * pixel;
+            let t = end - end.floor() - k as f64;
+            before[i] = if pixel > 0.0 { (ramp(t + pixel) - ramp(t)) / pixel } else { t.clamp(0.0, 1.0) };
         }
     }
-    (texel + shift) as i64
+}
+multiversion! {
+    fn ends(centres: &[f64], offset: f64, pixel: f64, size: usize, texels: &mut [i32], before: &mut [f64]) = ends_generic;
 }
 
 /// Both ends of every column's (or row's) box.
@@ -56,6 +71,8 @@ pub struct Windows {
     pub stop_before: Vec<f64>,
     /// Full width of the box in texels, > 0.
     pub width: f64,
+    /// Whether any eight neighbouring ends begin within sixteen texels.
+    pub near: bool,
 }
 
 impl Windows {
@@ -70,19 +87,13 @@ impl Windows {
             start_before: vec![0.0; reach * count],
             stop_before: vec![0.0; reach * count],
             width,
+            near: false,
         };
-        let mut before = vec![0.0; reach];
-        // Outside the grid all texels are clear, so where exactly an end lies there does not matter.
-        let clamp = |texel: i64| texel.clamp(-(reach as i64), size as i64) as i32;
-        for i in 0..count {
-            let centre = centre(i);
-            let texel = centre.floor();
-            let offset = centre - texel;
-            windows.start[i] = clamp(end(texel, offset - 0.5 * width, pixel, &mut before));
-            before.iter().enumerate().for_each(|(k, g)| windows.start_before[k * count + i] = *g);
-            windows.stop[i] = clamp(end(texel, offset + 0.5 * width, pixel, &mut before));
-            before.iter().enumerate().for_each(|(k, g)| windows.stop_before[k * count + i] = *g);
-        }
+        let centres: Vec<f64> = (0..count).map(centre).collect();
+        ends(&centres, -0.5 * width, pixel, size, &mut windows.start, &mut windows.start_before);
+        ends(&centres, 0.5 * width, pixel, size, &mut windows.stop, &mut windows.stop_before);
+        let near = |ends: &[i32]| ends.windows(8).all(|e| e[7] - e[0] < 16);
+        windows.near = near(&windows.start) && near(&windows.stop);
         windows
     }
 
