@@ -52,6 +52,11 @@ impl Srgb {
         })
     }
 
+    /// The table itself, for shaders.
+    pub(crate) fn entries(&self) -> &[u32] {
+        &self.entries
+    }
+
     /// [`code_exact`] for every f32, from the table.
     #[inline(always)]
     pub fn code(&self, linear: f32) -> u32 {

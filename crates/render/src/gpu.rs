@@ -249,3 +249,6 @@ pub(crate) struct Output {
     host: wgpu::Buffer,
     size: u64,
 }
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -23,7 +23,9 @@ use std::time::Instant;
 use kelir_scene::{Ambient, Theatre};
 use serde::{Deserialize, Serialize};
 
-use crate::{Backend, Frame, Layer, RenderError, Renderer, Stats, View, albedo, irradiance};
+use crate::encode::{Srgb, pack};
+use crate::simd::Isa;
+use crate::{Backend, Frame, Layer, RenderError, Renderer, Stats, View, albedo, irradiance, pa};
 use bounds::Padded;
 use estimate::{Estimator, Row};
 use points::{Points, REPLICATES};
@@ -76,6 +78,7 @@ impl Mc {
         view: &View,
         layers: bool,
     ) -> Result<(Vec<Row>, Stats), RenderError> {
+        pa::check_view(theatre, view)?;
         if matches!(theatre.ambient, Ambient::Dome { .. }) {
             let reason = "ambient.model = \"dome\" is not drawn yet".into();
             return Err(RenderError::Inapplicable { technique: "mc", reason });
@@ -172,12 +175,19 @@ impl Renderer for Mc {
         white: f64,
         out: &mut [u32],
     ) -> Result<Stats, RenderError> {
+        if out.len() != view.size[0] * view.size[1] {
+            let [w, h] = view.size;
+            return Err(RenderError::View(format!("{} pixels given for {w}x{h}", out.len())));
+        }
+        if !(white.is_finite() && white > 0.0) {
+            return Err(RenderError::View(format!("white = {white}: a radiance above 0")));
+        }
         let (rows, stats) = self.rows(theatre, view, false)?;
-        let width = view.size[0];
+        let (width, srgb, scale) = (view.size[0], Srgb::get(), (1.0 / white) as f32);
         for (out, row) in out.chunks_exact_mut(width).zip(&rows) {
             for (i, pixel) in out.iter_mut().enumerate() {
-                let rgb = [0, 1, 2].map(|c| f64::from(row.values[c * width + i]) / white);
-                *pixel = encode(rgb);
+                let [r, g, b] = [0, 1, 2].map(|c| srgb.code(row.values[c * width + i] * scale));
+                *pixel = pack(r, g, b);
             }
         }
         Ok(stats)
@@ -187,8 +197,7 @@ impl Renderer for Mc {
         if let Some(sampler) = &self.gpu {
             return sampler.gpu.adapter();
         }
-        let width = native::vector_width();
-        format!("native {} threads {width}", rayon::current_num_threads())
+        format!("native {} threads {}", rayon::current_num_threads(), Isa::detect().name())
     }
 }
 
@@ -218,16 +227,6 @@ fn count(rows: &[Row], samples: usize, emitters: usize, view: &View, stats: &mut
         stats.values.insert("se_rms".into(), (square / n).sqrt() / full);
         stats.values.insert("se_max".into(), max / full);
     }
-}
-
-/// sRGB codes of display-linear values.
-fn encode(rgb: [f64; 3]) -> u32 {
-    let [r, g, b] = rgb.map(|v| {
-        let v = v.clamp(0.0, 1.0);
-        let s = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
-        (s * 255.0).round() as u32
-    });
-    0xff00_0000 | b << 16 | g << 8 | r
 }
 
 #[cfg(test)]

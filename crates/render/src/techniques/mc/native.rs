@@ -3,25 +3,12 @@
 use super::bounds::Padded;
 use super::plan::{Axis, EmitterPlan, Plan};
 use super::points::{self, Points, REPLICATES};
+use crate::simd::Isa;
 
 /// Sums of one pixel's and one emitter's replicates, per channel.
 pub type Sums<const C: usize> = [[f64; REPLICATES]; C];
 
 type Lanes = [f32; REPLICATES];
-
-/// The widest instructions used, for provenance.
-pub fn vector_width() -> &'static str {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl") {
-            return "avx512";
-        }
-        if is_x86_feature_detected!("avx2") {
-            return "avx2";
-        }
-    }
-    "baseline"
-}
 
 /// What a pixel's sums need.
 pub struct Sampler<'a> {
@@ -46,21 +33,18 @@ impl Sampler<'_> {
     /// The arithmetic is the same on every machine (no fused operations, a fixed order), only its width differs.
     pub fn sums<const C: usize>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
         #[cfg(target_arch = "x86_64")]
-        {
-            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl") {
-                // SAFETY: the processor has the features.
-                return unsafe { self.sums_avx512::<C>(k, i, j, v0) };
-            }
-            if is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has the feature.
-                return unsafe { self.sums_avx2::<C>(k, i, j, v0) };
-            }
+        match Isa::detect() {
+            // SAFETY: detected on this machine.
+            Isa::Avx512 => return unsafe { self.sums_avx512::<C>(k, i, j, v0) },
+            // SAFETY: detected on this machine.
+            Isa::Avx2 => return unsafe { self.sums_avx2::<C>(k, i, j, v0) },
+            Isa::Plain => {}
         }
         self.sums_any::<C>(k, i, j, v0)
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512vl")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
     fn sums_avx512<const C: usize>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
         self.sums_any::<C>(k, i, j, v0)
     }

@@ -210,3 +210,17 @@ fn gpu_agrees_with_cpu() {
         assert!(distance(&cpu, &on_gpu(&theatre, &view, &wrong)) > 5e-3);
     }
 }
+
+#[test]
+fn structs_are_laid_out_as_the_shader_expects() {
+    use crate::gpu::tests::same_layout;
+    same_layout!(
+        gpu::WGSL,
+        "Params",
+        gpu::Params { width, height, samples, jobs, planes, seed, area, channels }
+    );
+    same_layout!(gpu::WGSL, "Job", estimate::Job { x, y, emitter, first, end, v0_r, v0_g, v0_b });
+    same_layout!(gpu::WGSL, "Axis", gpu::GpuAxis { offset, low, high, anchor });
+    same_layout!(gpu::WGSL, "Emitter", gpu::Emitter { side_x, side_y, pixel_x, pixel_y });
+    same_layout!(gpu::WGSL, "Map", gpu::Map { emitter_x, emitter_y, pixel_x, pixel_y, layer, channels });
+}

@@ -10,6 +10,7 @@
 //! a pixel, at most ¼ of the product of both planes' change across it.
 
 mod background;
+mod gpu;
 mod native;
 mod plan;
 mod rows;
@@ -64,9 +65,9 @@ pub enum Weights {
 /// The renderer for `knobs` on `backend`.
 pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
     knobs.check()?;
-    match backend {
-        Backend::Gpu => Err(RenderError::Gpu("pa has no GPU backend yet".into())),
-        Backend::Auto | Backend::Cpu => Ok(Box::new(Native::new(*knobs))),
+    match crate::gpu::choose(backend)? {
+        Some(gpu) => Ok(Box::new(gpu::OnGpu::new(gpu, *knobs, &gpu::Shaders::default())?)),
+        None => Ok(Box::new(Native::new(*knobs))),
     }
 }
 

@@ -1,0 +1,80 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+
+/// Every shader is valid WGSL by naga's own validator; one with an error is not (negative control).
+#[test]
+fn shaders_are_valid() {
+    use wgpu::naga::{front::wgsl, valid};
+    let check = |text: &str| -> Result<(), String> {
+        let module = wgsl::parse_str(text).map_err(|e| e.to_string())?;
+        valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty())
+            .validate(&module)
+            .map(|_| ())
+            .map_err(|e| format!("{e:?}"))
+    };
+    for (name, text) in shaders() {
+        check(text).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!(check(&text.replace("@workgroup_size(", "@workgroup_size(0 * ")).is_err(), "{name}");
+    }
+}
+
+/// All shaders of the crate, found in the source tree so that a new one can't be forgotten.
+fn shaders() -> Vec<(String, &'static str)> {
+    fn find(folder: &std::path::Path, found: &mut Vec<(String, &'static str)>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                find(&path, found);
+            } else if path.extension().is_some_and(|e| e == "wgsl") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                found.push((path.file_name().unwrap().to_string_lossy().into(), text.leak()));
+            }
+        }
+    }
+    let mut found = Vec::new();
+    find(std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src")), &mut found);
+    assert!(found.len() >= 5);
+    found
+}
+
+/// (offset, name) of a WGSL struct's members, and its size.
+pub(crate) fn wgsl_layout(text: &str, name: &str) -> (Vec<(usize, String)>, usize) {
+    let module = wgpu::naga::front::wgsl::parse_str(text).unwrap();
+    let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap();
+    let wgpu::naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
+    let members = members.iter().map(|m| (m.offset as usize, m.name.clone().unwrap_or_default())).collect();
+    (members, *span as usize)
+}
+
+/// Asserts that a Rust struct has the WGSL struct's fields at the same offsets, in order, and the same size.
+macro_rules! same_layout {
+    ($wgsl:expr, $name:literal, $rust:ty { $($field:ident),* $(,)? }) => {{
+        let (members, size) = $crate::gpu::tests::wgsl_layout($wgsl, $name);
+        let ours = vec![$((std::mem::offset_of!($rust, $field), stringify!($field).to_string())),*];
+        assert_eq!(members, ours, "{}", $name);
+        assert_eq!(size, size_of::<$rust>(), "{}", $name);
+    }};
+}
+pub(crate) use same_layout;
+
+/// A machine without an adapter gets told what to install; this one has at least the software adapter.
+#[test]
+fn adapters_are_listed_and_auto_never_takes_a_software_one() {
+    assert!(!adapters().is_empty(), "{HOW_TO_INSTALL}");
+    assert!(choose(Backend::Cpu).unwrap().is_none());
+    assert!(choose(Backend::Auto).unwrap().is_none_or(|gpu| !gpu.is_software()));
+    let gpu = choose(Backend::Gpu).unwrap().unwrap();
+    assert!(adapters().contains(&gpu.adapter()));
+}
+
+/// A shader that does not compile is an error that names the adapter, and the device stays failed; no panic.
+#[test]
+fn a_failed_device_is_an_error() {
+    let gpu = choose(Backend::Gpu).unwrap().unwrap();
+    gpu.check().unwrap();
+    gpu.module("broken", "this is not WGSL");
+    let error = gpu.check().unwrap_err().to_string();
+    assert!(error.contains(&gpu.adapter()), "{error}");
+    assert!(gpu.check().is_err());
+}

@@ -1,0 +1,266 @@
+#![allow(clippy::unwrap_used)]
+
+use glam::DVec3;
+use kelir_scene::{Albedo, Emitter, EmitterShape, Exposure, Lamp, Plane, Screen};
+
+use super::*;
+use crate::oracle::{Point, visibility};
+use crate::pa::Native;
+use crate::{Backend, Pixel};
+
+/// A disc with a soft edge and holes, different in each channel.
+fn figure(width: usize, height: usize, channels: usize, max: u16) -> Mask {
+    let texel = |c: usize, x: usize, y: usize| {
+        let (u, v) = (x as f64 / width as f64 - 0.45, y as f64 / height as f64 - 0.5);
+        let r = (1.7 * u * u + v * v).sqrt() + 0.05 * (9.0 * u + 3.0 * c as f64).sin();
+        let holes = if (x / 2 + y / 3).is_multiple_of(5) { 0.6 } else { 0.0 };
+        let edge = ((r - 0.35) * height as f64 / 3.0).clamp(0.0, 1.0);
+        (f64::from(max) * f64::max(edge, holes)).round() as u16
+    };
+    let texels: Vec<u16> = (0..channels * height * width)
+        .map(|k| texel(k / (width * height), k % width, k / width % height))
+        .collect();
+    let texels = match max {
+        255 => Texels::U8(texels.iter().map(|t| *t as u8).collect()),
+        _ => Texels::U16(texels),
+    };
+    Mask::new(width, height, channels, texels)
+}
+
+fn plane(mask: Mask, centre_m: [f64; 3]) -> Plane {
+    let size_m = [0.6 * mask.width as f64 / mask.height as f64, 0.6];
+    Plane { mask: Arc::new(mask), centre_m: DVec3::from(centre_m), size_m, tilt_deg: [0.0; 2] }
+}
+
+fn theatre(planes: Vec<Plane>, ambient: Ambient, colours: [[f64; 3]; 2]) -> Theatre {
+    let emitter = |name: &str, side: f64, radiance: [f64; 3]| Emitter {
+        name: name.into(),
+        shape: EmitterShape::Rectangle { size_m: [side, 0.8 * side] },
+        radiance,
+    };
+    Theatre {
+        screen: Screen { width_m: 1.6, height_m: 0.9, albedo: Albedo::Uniform([0.8, 0.7, 0.6]) },
+        lamp: Lamp {
+            position_m: DVec3::new(0.05, -0.03, -1.5),
+            emitters: vec![emitter("inner", 0.02, colours[0]), emitter("outer", 0.1, colours[1])],
+        },
+        ambient,
+        planes,
+        exposure: Exposure::Auto,
+    }
+}
+
+/// Grey; sixteen bits; colour with the paper's ambient light; two planes, one of them coloured, with a lamp of two colours.
+fn scenes() -> Vec<Theatre> {
+    let paper = Ambient::Paper { k_d_m: 1.0, s: [0.3, 0.2, 0.1] };
+    let grey = [[2000.0; 3], [40.0; 3]];
+    let centre = [0.1, 0.02, -0.2];
+    vec![
+        theatre(vec![plane(figure(100, 128, 1, 255), centre)], Ambient::None, grey),
+        theatre(vec![plane(figure(100, 128, 1, 65535), centre)], Ambient::None, grey),
+        theatre(vec![plane(figure(40, 64, 3, 255), [0.0, 0.0, -0.9])], paper, grey),
+        theatre(
+            vec![plane(figure(100, 128, 1, 255), centre), plane(figure(40, 64, 3, 255), [-0.2, 0.1, -0.5])],
+            paper,
+            [[2000.0, 1500.0, 800.0], [40.0, 40.0, 60.0]],
+        ),
+    ]
+}
+
+fn view(pixel: Pixel) -> View {
+    View { size: [160, 90], pixel, skip: true }
+}
+
+fn on_gpu(shaders: &Shaders, knobs: Knobs) -> OnGpu {
+    let gpu = crate::gpu::choose(Backend::Gpu).expect("the tests need a Vulkan adapter").unwrap();
+    OnGpu::new(gpu, knobs, shaders).unwrap()
+}
+
+/// A shader that is 3 % off.
+fn wrong() -> Shaders {
+    let right = Shaders::default();
+    let visibility = right.visibility.replace("min(mean * l.norm, 1.0)", "min(mean * l.norm * 0.97, 1.0)");
+    assert_ne!(visibility, right.visibility);
+    Shaders { visibility, ..right }
+}
+
+/// Largest difference of any visibility.
+fn worst(a: &Frame, b: &Frame) -> f32 {
+    let pairs = a.layers.iter().zip(&b.layers).flat_map(|(a, b)| {
+        assert_eq!(a.name, b.name);
+        a.values.iter().zip(&b.values)
+    });
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+/// Largest difference of any display code.
+fn codes_apart(a: &[u32], b: &[u32]) -> u32 {
+    let bytes = |p: &u32| p.to_le_bytes();
+    let pairs = a.iter().flat_map(bytes).zip(b.iter().flat_map(bytes));
+    pairs.map(|(a, b)| u32::from(a.abs_diff(b))).max().unwrap_or(0)
+}
+
+/// Visibility to 2e-6, display codes to one; a shader that is 3 % off fails both.
+#[test]
+fn gpu_agrees_with_native() {
+    for (knobs, pixel) in [
+        (Knobs::default(), Pixel::Centre),
+        (Knobs::default(), Pixel::Area),
+        (Knobs { split: 2, weights: Weights::Irradiance }, Pixel::Area),
+    ] {
+        let (mut right, mut wrong) = (on_gpu(&Shaders::default(), knobs), on_gpu(&wrong(), knobs));
+        for (k, scene) in scenes().iter().enumerate() {
+            let (view, mut native) = (view(pixel), Native::new(knobs));
+            let truth = native.radiance(scene, &view).unwrap();
+            let drawn = right.radiance(scene, &view).unwrap();
+            let error = worst(&truth, &drawn);
+            assert!(error <= 2e-6, "scene {k} {pixel:?} {knobs:?}: {error:e}");
+            assert!(worst(&truth, &wrong.radiance(scene, &view).unwrap()) > 1e-2);
+            let white = crate::white([scene], &view);
+            let mut codes = [(); 3].map(|()| vec![0; 160 * 90]);
+            native.display(scene, &view, white, &mut codes[0]).unwrap();
+            right.display(scene, &view, white, &mut codes[1]).unwrap();
+            wrong.display(scene, &view, white, &mut codes[2]).unwrap();
+            assert!(codes_apart(&codes[0], &codes[1]) <= 1, "scene {k} {pixel:?}");
+            assert!(codes_apart(&codes[0], &codes[2]) > 1);
+        }
+    }
+}
+
+/// The oracle shares nothing with the GPU but the scene.
+#[test]
+fn gpu_agrees_with_the_oracle() {
+    for pixel in [Pixel::Centre, Pixel::Area] {
+        let (scene, view) = (&scenes()[0], view(pixel));
+        let frame = on_gpu(&Shaders::default(), Knobs::default()).radiance(scene, &view).unwrap();
+        let off = on_gpu(&wrong(), Knobs::default()).radiance(scene, &view).unwrap();
+        let (mut error, mut control) = (0f64, 0f64);
+        for j in (2..90).step_by(7) {
+            for i in (1..160).step_by(5) {
+                for e in 0..2 {
+                    let truth = visibility(scene, e, Point::pixel(scene, &view, i, j), 1.0).geometric[0];
+                    let of = |f: &Frame| (f64::from(f.layers[e].values[j * 160 + i]) - truth).abs();
+                    error = error.max(of(&frame));
+                    control = control.max(of(&off));
+                }
+            }
+        }
+        assert!(error <= 2e-6, "{pixel:?}: {error:e}");
+        assert!(control > 1e-2);
+    }
+}
+
+/// Emitters of 1e-6 m to 1 m and planes next to screen and lamp: never NaN, never outside [0, 1], and as the CPU has it.
+#[test]
+fn gpu_stays_exact_under_stress() {
+    let mut gpu = on_gpu(&Shaders::default(), Knobs::default());
+    for side in [1e-6, 1e-3, 1.0] {
+        for z in [-1e-4, -0.75, -1.4999] {
+            let mut scene =
+                theatre(vec![plane(figure(96, 128, 1, 255), [0.05, 0.0, z])], Ambient::None, [[1.0; 3]; 2]);
+            scene.lamp.emitters.truncate(1);
+            scene.lamp.emitters[0].shape = EmitterShape::Rectangle { size_m: [side, 0.8 * side] };
+            let view = View { size: [96, 54], ..view(Pixel::Area) };
+            let truth = Native::new(Knobs::default()).radiance(&scene, &view).unwrap();
+            let drawn = gpu.radiance(&scene, &view).unwrap();
+            assert!(worst(&truth, &drawn) <= 4e-6, "side {side}, z {z}: {:e}", worst(&truth, &drawn));
+            assert!(drawn.layers[0].values.iter().all(|v| (0.0..=1.0).contains(v)));
+        }
+    }
+}
+
+/// Bands of rows, as large images need, change no bit; nor does drawing a second time from what was kept.
+#[test]
+fn bands_change_nothing() {
+    let (scene, view) = (&scenes()[3], view(Pixel::Area));
+    let mut whole = on_gpu(&Shaders::default(), Knobs::default());
+    let mut banded = on_gpu(&Shaders::default(), Knobs::default());
+    banded.most_words = 40_000;
+    let one = whole.radiance(scene, &view).unwrap();
+    let many = banded.radiance(scene, &view).unwrap();
+    assert!(one.stats.counts["bands"] == 1 && many.stats.counts["bands"] > 3);
+    assert_eq!(one.radiance, many.radiance);
+    let again = whole.radiance(scene, &view).unwrap();
+    assert_eq!(one.radiance, again.radiance);
+    assert_eq!((again.stats.counts["tables_built"], again.stats.counts["background_reused"]), (0, 1));
+    banded.most_words = 100;
+    assert!(banded.radiance(scene, &view).is_err());
+}
+
+#[test]
+fn structs_are_laid_out_as_the_shaders_expect() {
+    use crate::gpu::tests::same_layout;
+    let s = Shaders::default();
+    same_layout!(&s.table, "Params", TableParams { width, height, max_code, unused });
+    same_layout!(
+        &s.rows,
+        "Params",
+        RowsParams {
+            first,
+            rows,
+            from_x,
+            to_x,
+            height,
+            reach,
+            windows,
+            count,
+            sums,
+            interior,
+            scale,
+            unused
+        }
+    );
+    same_layout!(
+        &s.visibility,
+        "Params",
+        VisibilityParams {
+            width,
+            rows,
+            first,
+            sub,
+            start,
+            end,
+            channels,
+            emitter,
+            emitters,
+            rest,
+            share_channels,
+            own_channels,
+            by_irradiance,
+            is_first,
+            step_x,
+            step_y,
+            origin_x,
+            origin_y,
+            half_x,
+            half_y,
+        }
+    );
+    same_layout!(
+        &s.visibility,
+        "Lookup",
+        GpuLookup { windows, count, reach, sums, channel, from_x, to_x, plane, interior, norm }
+    );
+    same_layout!(
+        &s.shade,
+        "Params",
+        ShadeParams {
+            width,
+            rows,
+            channels,
+            emitters,
+            rest,
+            share_channels,
+            lit_channels,
+            planes,
+            own_channels,
+            paper,
+            display,
+            scale,
+            k_d,
+            s_r,
+            s_g,
+            s_b,
+        }
+    );
+}
