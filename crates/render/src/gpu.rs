@@ -153,12 +153,12 @@ impl Gpu {
         })
     }
 
-    /// A read-only storage buffer holding `data` (one zero word where it is empty: bindings may not be).
+    /// A read-only storage buffer holding `data` (zeros where it is empty: a binding holds at least one element).
     pub(crate) fn storage<T: bytemuck::NoUninit>(&self, label: &str, data: &[T]) -> wgpu::Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(label),
-            contents: if bytes.is_empty() { &[0; 16] } else { bytes },
+            contents: if bytes.is_empty() { &[0; 256] } else { bytes },
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
         })
     }
@@ -218,6 +218,7 @@ impl Gpu {
         let bytes = bytes.next_multiple_of(4).clamp(4, output.size);
         encoder.copy_buffer_to_buffer(&output.device, 0, &output.host, 0, bytes);
         let index = self.queue.submit([encoder.finish()]);
+        self.check()?;
         let slice = output.host.slice(..bytes);
         let (sender, receiver) = std::sync::mpsc::channel();
         slice.map_async(wgpu::MapMode::Read, move |result| {

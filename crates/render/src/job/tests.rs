@@ -99,7 +99,7 @@ fn the_same_job_gives_the_same_bytes_and_says_where_they_came_from() {
     // Another technique is another image.
     let mc = Technique::Mc(mc::Knobs { spp: 16, ..mc::Knobs::default() });
     let mut other = job("", mc, Output::Still);
-    other.reference = Some(Technique::Mc(mc::Knobs { spp: 64, seed: 9 }));
+    other.reference = Some(Technique::Mc(mc::Knobs { spp: 64, seed: 9, ..mc::Knobs::default() }));
     let other = run(&mut other, &mut |_| ()).unwrap();
     assert_ne!(other.sha256, one.sha256);
     assert_eq!(other.provenance.white, one.provenance.white, "exposure does not depend on the technique");

@@ -19,13 +19,11 @@ pub struct Estimator<'a> {
     pub plan: &'a Plan,
     pub masks: &'a [Arc<Padded>],
     /// E⁰ at unit radiance, one image an emitter.
-    pub lit: Vec<&'a [f64]>,
+    pub lit: &'a [&'a [f64]],
+    /// Radiance of each source: the emitters, then the dome where there is one.
+    pub radiance: Vec<[f64; 3]>,
     pub albedo: &'a PixelAlbedo,
     pub points: &'a Points,
-    /// Points per replicate.
-    pub samples: usize,
-    /// Folded seed.
-    pub seed: u32,
     pub skip: bool,
     pub layers: bool,
 }
@@ -84,45 +82,43 @@ impl Estimate {
 }
 
 impl Estimator<'_> {
-    /// Every row, first on top, on all cores; the result does not depend on how many there are.
-    pub fn rows(&self) -> Vec<Row> {
-        (0..self.plan.size[1]).into_par_iter().map(|j| self.row(j, &mut |job| self.native(job))).collect()
+    /// The given rows, on all cores; the result does not depend on how many there are.
+    pub fn rows(&self, rows: &[usize]) -> Vec<Row> {
+        rows.par_iter().map(|j| self.row(*j, &mut |job| self.native(job))).collect()
     }
 
-    /// Every row with sums from `draw`, which is handed the jobs of many rows at a time: `channels * REPLICATES` sums each.
+    /// The given rows with sums from `draw`, which is handed the jobs of many rows at a time: `channels * REPLICATES`
+    /// sums each.
     pub fn rows_by(
         &self,
+        rows: &[usize],
         mut draw: impl FnMut(&[Job]) -> Result<Vec<f32>, RenderError>,
     ) -> Result<Vec<Row>, RenderError> {
-        /// Jobs are gathered until there are about this many.
+        /// Jobs are gathered until there may be this many.
         const ENOUGH: usize = 1 << 19;
-        let (width, height) = (self.plan.size[0], self.plan.size[1]);
-        let band = (ENOUGH / (width * self.plan.emitters.len()).max(1)).max(1);
+        let band = (ENOUGH / (self.plan.size[0] * self.plan.emitters.len()).max(1)).max(1);
         let per_job = self.plan.channels * REPLICATES;
-        let mut rows = Vec::with_capacity(height);
-        for first in (0..height).step_by(band) {
-            let these = first..(first + band).min(height);
-            let wanted: Vec<Vec<Job>> = these
-                .clone()
-                .into_par_iter()
-                .map(|j| {
-                    let mut jobs = Vec::new();
-                    self.row(j, &mut |job| {
-                        jobs.push(*job);
-                        [[0.0; REPLICATES]; 3]
-                    });
-                    jobs
-                })
-                .collect();
+        let mut done = Vec::with_capacity(rows.len());
+        for rows in rows.chunks(band) {
+            let gather = |j: &usize| {
+                let mut jobs = Vec::new();
+                self.row(*j, &mut |job| {
+                    jobs.push(*job);
+                    [[0.0; REPLICATES]; 3]
+                });
+                jobs
+            };
+            let wanted: Vec<Vec<Job>> = rows.par_iter().map(gather).collect();
             let sums = draw(&wanted.concat())?;
-            let mut starts = vec![0];
-            starts.extend(wanted.iter().scan(0, |sum, jobs| {
-                *sum += jobs.len() * per_job;
-                Some(*sum)
-            }));
-            rows.par_extend(these.clone().into_par_iter().map(|j| {
-                let mut sums = sums[starts[j - first]..].chunks_exact(per_job);
-                self.row(j, &mut |_| {
+            let starts = wanted.iter().scan(0, |end, jobs| {
+                let start = *end;
+                *end += jobs.len() * per_job;
+                Some(start)
+            });
+            let starts: Vec<usize> = starts.collect();
+            done.par_extend(rows.par_iter().zip(starts).map(|(j, start)| {
+                let mut sums = sums[start..].chunks_exact(per_job);
+                self.row(*j, &mut |_| {
                     let sums = sums.next().expect("as many sums as jobs");
                     std::array::from_fn(|c| {
                         let c = c.min(self.plan.channels - 1) * REPLICATES;
@@ -131,7 +127,7 @@ impl Estimator<'_> {
                 })
             }));
         }
-        Ok(rows)
+        Ok(done)
     }
 
     fn native(&self, job: &Job) -> [[f64; REPLICATES]; 3] {
@@ -139,8 +135,6 @@ impl Estimator<'_> {
             plan: self.plan,
             masks: self.masks,
             points: self.points,
-            samples: self.samples,
-            seed: self.seed,
             planes: job.first as usize..job.end as usize,
         };
         let (k, i, j) = (job.emitter as usize, job.x as usize, job.y as usize);
@@ -187,14 +181,14 @@ impl Estimator<'_> {
         let known = self.known(k, i, j, planes.clone());
         let [v0_r, v0_g, v0_b] = known.unwrap_or([0.0; 3]);
         let full: f64 = self.masks[planes.clone()].iter().map(|m| f64::from(m.max_code)).product();
-        let lit = self.lit[k][j * self.plan.size[0] + i];
+        let lit = self.lit(k, j * self.plan.size[0] + i);
         let base = [v0_r, v0_g, v0_b].map(|v| lit * (f64::from(v) / full));
         if known.is_some() && self.skip {
             return (Estimate { base, deviation: None }, false);
         }
         let (x, y, first, end) = (i as u32, j as u32, planes.start as u32, planes.end as u32);
         let sums = source(&Job { x, y, emitter: k as u32, first, end, v0_r, v0_g, v0_b });
-        let scale = self.plan.emitters[k].scale / (self.samples as f64 * full);
+        let scale = self.plan.emitters[k].scale / (self.points.samples as f64 * full);
         (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none())
     }
 
@@ -202,7 +196,7 @@ impl Estimator<'_> {
     fn known(&self, k: usize, i: usize, j: usize, planes: std::ops::Range<usize>) -> Option<[f32; 3]> {
         let mut product = Some([1f32; 3]);
         for (map, mask) in self.plan.emitters[k].planes[planes.clone()].iter().zip(&self.masks[planes]) {
-            let (x, y) = (map.columns[i].range, map.rows[j].range);
+            let (x, y) = map.range(i, j);
             if !mask.is_constant(x, y) {
                 product = None;
                 continue;
@@ -220,14 +214,14 @@ impl Estimator<'_> {
     fn finish(&self, i: usize, j: usize, estimates: &[Estimate], penumbra: bool, row: &mut Row) {
         let width = self.plan.size[0];
         let pixel = j * width + i;
-        let emitters = &self.theatre.lamp.emitters;
+        let sources = &self.radiance;
         let mut error = 0f64;
         for c in 0..3 {
             let reflect = f64::from(self.albedo.at(c, pixel)) / std::f64::consts::PI;
-            let lit: f64 = emitters.iter().zip(&self.lit).map(|(e, lit)| e.radiance[c] * lit[pixel]).sum();
+            let lit: f64 = sources.iter().enumerate().map(|(k, l)| l[c] * self.lit(k, pixel)).sum();
             let lamp = |subset: usize, of: &dyn Fn(&Estimate) -> f64| -> f64 {
-                let estimates = &estimates[subset * emitters.len()..];
-                emitters.iter().zip(estimates).map(|(e, estimate)| e.radiance[c] * of(estimate)).sum()
+                let estimates = &estimates[subset * sources.len()..];
+                sources.iter().zip(estimates).map(|(l, estimate)| l[c] * of(estimate)).sum()
             };
             let radiance =
                 |of: &dyn Fn(&Estimate) -> f64| reflect * self.irradiance(c, lit, &|s| lamp(s, of));
@@ -250,13 +244,18 @@ impl Estimator<'_> {
         }
         if self.layers {
             let channels = self.plan.channels;
-            for (k, estimate) in estimates[..emitters.len()].iter().enumerate() {
+            for (k, estimate) in estimates[..sources.len()].iter().enumerate() {
                 for c in 0..channels {
-                    let visibility = estimate.mean(c) / self.lit[k][pixel];
+                    let visibility = estimate.mean(c) / self.lit(k, pixel);
                     row.values[(6 + k * channels + c) * width + i] = visibility as f32;
                 }
             }
         }
+    }
+
+    /// E⁰ of source `k` at unit radiance; a whole dome's is π.
+    fn lit(&self, k: usize, pixel: usize) -> f64 {
+        self.lit.get(k).map_or(std::f64::consts::PI, |image| image[pixel])
     }
 
     /// The screen's irradiance in channel `c` with the ambient light: `lamp(0)` is Σ L_k E_k through all planes,

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
 
 use super::bounds::Padded;
 use super::estimate::Job;
-use super::plan::{Axis, Plan};
-use super::points::{Points, REPLICATES};
+use super::plan::{Axis, Plan, PlaneMap, Shape};
+use super::points::{self, Points, REPLICATES};
 use crate::RenderError;
 use crate::gpu::{Gpu, Output};
 
@@ -49,10 +50,11 @@ pub(super) struct Emitter {
     pub side_y: f32,
     pub pixel_x: f32,
     pub pixel_y: f32,
+    pub shape: u32,
 }
 
 #[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
 pub(super) struct Map {
     pub emitter_x: f32,
     pub emitter_y: f32,
@@ -60,6 +62,33 @@ pub(super) struct Map {
     pub pixel_y: f32,
     pub layer: u32,
     pub channels: u32,
+    pub tilted: u32,
+    pub behind: f32,
+    pub right_x: f32,
+    pub right_y: f32,
+    pub down_x: f32,
+    pub down_y: f32,
+    pub normal_x: f32,
+    pub normal_y: f32,
+}
+
+/// What one job adds to a tilted plane.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+pub(super) struct GpuSeen {
+    pub x: GpuAxis,
+    pub y: GpuAxis,
+    pub ratio: f32,
+    pub rest: f32,
+    pub depth: f32,
+    pub along_x: f32,
+    pub along_y: f32,
+}
+
+impl From<&Axis> for GpuAxis {
+    fn from(a: &Axis) -> Self {
+        Self { offset: a.offset, low: a.low, high: a.high, anchor: a.anchor }
+    }
 }
 
 /// Compiled once; keeps the masks' texture while the masks stay, and the buffers that sums are read through.
@@ -68,7 +97,7 @@ pub struct Sampler {
     pipeline: wgpu::ComputePipeline,
     masks: Option<(Vec<u64>, wgpu::Texture)>,
     output: Option<(u64, Output)>,
-    points: Option<(usize, wgpu::Buffer)>,
+    points: Option<(u64, usize, wgpu::Buffer)>,
 }
 
 /// What one frame's jobs share on the device.
@@ -97,29 +126,53 @@ impl Sampler {
         ids: &[u64],
         masks: &[Arc<Padded>],
         points: &Points,
-        samples: usize,
-        seed: u32,
     ) -> Result<Scene, RenderError> {
         if self.masks.as_ref().is_none_or(|(old, _)| old != ids) {
             self.masks = Some((ids.to_vec(), self.texture(masks)?));
         }
-        if self.points.as_ref().is_none_or(|(old, _)| *old != samples) {
-            let words: Vec<u32> = points.dims.concat();
-            self.points = Some((samples, self.gpu.storage("points", &words)));
+        let (seed, samples) = (points.seed, points.samples);
+        if self.points.as_ref().is_none_or(|(s, n, _)| (*s, *n) != (seed, samples)) {
+            self.points = Some((seed, samples, self.gpu.storage("points", &points.dims.concat())));
         }
         let layer = |p: usize| masks[..p].iter().map(|m| m.channels as u32).sum();
         let (mut emitters, mut maps, mut axes, mut tangents) = (vec![], vec![], vec![], vec![]);
         for e in &plan.emitters {
             let ([side_x, side_y], [pixel_x, pixel_y]) = (e.emitter, e.pixel);
-            emitters.push(Emitter { side_x, side_y, pixel_x, pixel_y });
+            let shape = match e.shape {
+                Shape::Rectangle => 0,
+                Shape::Disk => 1,
+                Shape::Dome => 2,
+            };
+            emitters.push(Emitter { side_x, side_y, pixel_x, pixel_y, shape });
             tangents.extend(e.columns.iter().chain(&e.rows).copied());
             for (p, map) in e.planes.iter().enumerate() {
-                let ([emitter_x, emitter_y], [pixel_x, pixel_y]) = (map.emitter, map.pixel);
-                let channels = masks[p].channels as u32;
-                maps.push(Map { emitter_x, emitter_y, pixel_x, pixel_y, layer: layer(p), channels });
-                let axis =
-                    |a: &Axis| GpuAxis { offset: a.offset, low: a.low, high: a.high, anchor: a.anchor };
-                axes.extend(map.columns.iter().chain(&map.rows).map(axis));
+                let (layer, channels) = (layer(p), masks[p].channels as u32);
+                let ([emitter_x, emitter_y], [pixel_x, pixel_y]) = match map {
+                    PlaneMap::Parallel(map) => (map.emitter, map.pixel),
+                    PlaneMap::Tilted(map) => (map.emitter, map.pixel),
+                };
+                let map_of =
+                    Map { emitter_x, emitter_y, pixel_x, pixel_y, layer, channels, ..Map::default() };
+                match map {
+                    PlaneMap::Parallel(map) => {
+                        maps.push(map_of);
+                        axes.extend(map.columns.iter().chain(&map.rows).map(GpuAxis::from));
+                    }
+                    PlaneMap::Tilted(map) => {
+                        maps.push(Map {
+                            tilted: 1,
+                            behind: if map.dome { 0.0 } else { 1.0 },
+                            right_x: map.right[0],
+                            right_y: map.right[1],
+                            down_x: map.down[0],
+                            down_y: map.down[1],
+                            normal_x: map.normal[0],
+                            normal_y: map.normal[1],
+                            ..map_of
+                        });
+                        axes.resize(axes.len() + plan.size[0] + plan.size[1], GpuAxis::zeroed());
+                    }
+                }
             }
         }
         let params = Params {
@@ -128,7 +181,7 @@ impl Sampler {
             samples: samples as u32,
             jobs: 0,
             planes: masks.len() as u32,
-            seed,
+            seed: points::fold(seed),
             area: u32::from(plan.area),
             channels: plan.channels as u32,
         };
@@ -199,7 +252,7 @@ impl Sampler {
     }
 
     /// The sums of every job: `channels * REPLICATES` a job, channel by channel.
-    pub fn run(&mut self, scene: &Scene, jobs: &[Job]) -> Result<Vec<f32>, RenderError> {
+    pub fn run(&mut self, plan: &Plan, scene: &Scene, jobs: &[Job]) -> Result<Vec<f32>, RenderError> {
         let per_job = scene.channels * REPLICATES;
         let mut sums = Vec::with_capacity(jobs.len() * per_job);
         for jobs in jobs.chunks(JOBS) {
@@ -207,7 +260,7 @@ impl Sampler {
             if self.output.as_ref().is_none_or(|(size, _)| *size < bytes) {
                 self.output = Some((bytes, self.gpu.output("sums", bytes)));
             }
-            let (Some((_, texture)), Some((_, points)), Some((_, output))) =
+            let (Some((_, texture)), Some((_, _, points)), Some((_, output))) =
                 (&self.masks, &self.points, &self.output)
             else {
                 unreachable!("a scene exists only after prepare")
@@ -217,6 +270,7 @@ impl Sampler {
                 dimension: Some(wgpu::TextureViewDimension::D2Array),
                 ..Default::default()
             });
+            let seen = self.gpu.storage("seen", &seen(plan, jobs));
             let (params, list) = (self.gpu.uniform("params", &params), self.gpu.storage("jobs", jobs));
             let bind = self.gpu.bind(
                 &self.pipeline,
@@ -230,6 +284,7 @@ impl Sampler {
                     scene.tangents.as_entire_binding(),
                     wgpu::BindingResource::TextureView(&view),
                     output.device.as_entire_binding(),
+                    seen.as_entire_binding(),
                 ],
             );
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
@@ -247,4 +302,24 @@ impl Sampler {
         }
         Ok(sums)
     }
+}
+
+/// The numbers of every job and plane, where any plane is tilted.
+fn seen(plan: &Plan, jobs: &[Job]) -> Vec<GpuSeen> {
+    let tilted = |k: usize| plan.emitters[k].planes.iter().any(|m| matches!(m, PlaneMap::Tilted(_)));
+    if !(0..plan.emitters.len()).any(tilted) {
+        return Vec::new();
+    }
+    let one = |map: &PlaneMap, job: &Job| match map {
+        PlaneMap::Parallel(_) => GpuSeen::zeroed(),
+        PlaneMap::Tilted(map) => {
+            let s = map.seen(job.x as usize, job.y as usize);
+            let [along_x, along_y] = s.along;
+            let (x, y) = (GpuAxis::from(&s.x), GpuAxis::from(&s.y));
+            GpuSeen { x, y, ratio: s.ratio, rest: s.rest, depth: s.depth, along_x, along_y }
+        }
+    };
+    jobs.par_iter()
+        .flat_map_iter(|job| plan.emitters[job.emitter as usize].planes.iter().map(move |map| one(map, job)))
+        .collect()
 }

@@ -39,6 +39,8 @@ struct Emitter {
     side_y: f32,
     pixel_x: f32,
     pixel_y: f32,
+    // 0 rectangle, 1 disk, 2 dome.
+    shape: u32,
 }
 
 // The texels that one plane shows of one emitter (planes of an emitter follow each other).
@@ -50,6 +52,27 @@ struct Map {
     // First layer of the plane's mask, and how many it has.
     layer: u32,
     channels: u32,
+    // 1: a perspective map with the job's own numbers in `seen`.
+    tilted: u32,
+    // 0 for the dome, whose directions do not depend on the place in the pixel.
+    behind: f32,
+    right_x: f32,
+    right_y: f32,
+    down_x: f32,
+    down_y: f32,
+    normal_x: f32,
+    normal_y: f32,
+}
+
+// What one job adds to a tilted plane, as in tilted.rs.
+struct Seen {
+    x: Axis,
+    y: Axis,
+    ratio: f32,
+    rest: f32,
+    depth: f32,
+    along_x: f32,
+    along_y: f32,
 }
 
 const REPLICATES = 16u;
@@ -68,6 +91,8 @@ const FLUSH = 32u;
 @group(0) @binding(6) var<storage, read> tangents: array<f32>;
 @group(0) @binding(7) var masks: texture_2d_array<u32>;
 @group(0) @binding(8) var<storage, read_write> sums: array<f32>;
+// job * planes + plane; empty where no plane is tilted.
+@group(0) @binding(9) var<storage, read> seen_by: array<Seen>;
 
 fn hash(word: u32) -> u32 {
     var x = word;
@@ -86,9 +111,39 @@ fn unit(word: u32) -> f32 {
     return f32(bitcast<i32>(word) >> 8u) * (1.0 / 16777216.0);
 }
 
-fn texel(axis: Axis, emitter: f32, pixel: f32, u: f32, v: f32) -> i32 {
-    let t = axis.offset + emitter * u + pixel * v;
+fn texel(axis: Axis, t: f32) -> i32 {
     return i32(floor(clamp(t, axis.low, axis.high))) + axis.anchor;
+}
+
+fn tilted_texels(map: Map, seen: Seen, u: vec2<f32>, v: vec2<f32>) -> vec2<i32> {
+    // y runs downwards on source and pixel, upwards in space.
+    let q = vec2<f32>(map.emitter_x * u.x, -(map.emitter_y * u.y));
+    let p = vec2<f32>(map.pixel_x * v.x, -(map.pixel_y * v.y));
+    let m = p + seen.ratio * (q - p);
+    let w = q - map.behind * p;
+    let normal = vec2<f32>(map.normal_x, map.normal_y);
+    let right = vec2<f32>(map.right_x, map.right_y);
+    let down = vec2<f32>(map.down_x, map.down_y);
+    let step = (seen.rest - dot(normal, m)) / (seen.depth + dot(normal, w));
+    return vec2<i32>(
+        texel(seen.x, seen.x.offset + (dot(right, m) + step * (seen.along_x + dot(right, w)))),
+        texel(seen.y, seen.y.offset + (dot(down, m) + step * (seen.along_y + dot(down, w)))),
+    );
+}
+
+fn disk(u: vec2<f32>) -> vec2<f32> {
+    let steep = abs(u.y) > abs(u.x);
+    let long = select(u.x, u.y, steep);
+    let short = select(u.y, u.x, steep);
+    let t = select(short / long, 0.0, long == 0.0);
+    let z = t * t;
+    let sin = t * (0.78539816 + z * (-0.08074551 + z * (0.0024903946 + z * (-3.6576204e-5 + z * 3.1336169e-7))));
+    let cos = 1.0 + z * (-0.30842514 + z * (0.015854344 + z * (-3.2599189e-4 + z * (3.5908604e-6 - z * 2.461137e-8))));
+    return select(vec2<f32>(long * cos, long * sin), vec2<f32>(long * sin, long * cos), steep);
+}
+
+fn directions(u: vec2<f32>) -> vec2<f32> {
+    return u * (2.0 / sqrt(max(1.0 - 4.0 * (u.x * u.x + u.y * u.y), 1e-12)));
 }
 
 @compute @workgroup_size(64)
@@ -120,21 +175,35 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var part = vec3<f32>(0.0);
     for (var s = 0u; s < params.samples; s++) {
         let at = s * REPLICATES + replicate;
-        let ux = unit(points[at] ^ shifts.x);
-        let uy = unit(points[table + at] ^ shifts.y);
-        var vx = 0.0;
-        var vy = 0.0;
+        var u = vec2<f32>(unit(points[at] ^ shifts.x), unit(points[table + at] ^ shifts.y));
+        var v = vec2<f32>(0.0);
         if params.area == 1u {
-            vx = unit(points[2u * table + at] ^ shifts.z);
-            vy = unit(points[3u * table + at] ^ shifts.w);
+            v = vec2<f32>(
+                unit(points[2u * table + at] ^ shifts.z),
+                unit(points[3u * table + at] ^ shifts.w),
+            );
+        }
+        if emitter.shape >= 1u {
+            u = disk(u);
+        }
+        if emitter.shape == 2u {
+            u = directions(u);
         }
         var seen = vec3<f32>(1.0);
         for (var p = job.first; p < job.end; p++) {
             let m = job.emitter * params.planes + p;
             let map = maps[m];
-            let x = texel(axes[m * lines + job.x], map.emitter_x, map.pixel_x, ux, vx);
-            let y = texel(axes[m * lines + params.width + job.y], map.emitter_y, map.pixel_y, uy, vy);
-            let at = vec2<i32>(x, y);
+            var at: vec2<i32>;
+            if map.tilted == 1u {
+                at = tilted_texels(map, seen_by[index * params.planes + p], u, v);
+            } else {
+                let x = axes[m * lines + job.x];
+                let y = axes[m * lines + params.width + job.y];
+                at = vec2<i32>(
+                    texel(x, x.offset + map.emitter_x * u.x + map.pixel_x * v.x),
+                    texel(y, y.offset + map.emitter_y * u.y + map.pixel_y * v.y),
+                );
+            }
             let first = f32(textureLoad(masks, at, map.layer, 0).x);
             if coloured {
                 let green = select(0u, 1u, map.channels == 3u);
@@ -147,9 +216,10 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                 seen.x *= first;
             }
         }
-        let x = tangent.x - emitter.side_x * ux + emitter.pixel_x * vx;
-        let y = tangent.y - emitter.side_y * uy + emitter.pixel_y * vy;
+        let x = tangent.x - emitter.side_x * u.x + emitter.pixel_x * v.x;
+        let y = tangent.y - emitter.side_y * u.y + emitter.pixel_y * v.y;
         let w = 1.0 + (x * x + y * y);
+        // The dome's sides and tangents are zero: its weight is 1.
         part += (seen - v0) * (1.0 / (w * w));
         if (s & (FLUSH - 1u)) == FLUSH - 1u {
             total += part;

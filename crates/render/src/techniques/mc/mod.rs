@@ -10,11 +10,13 @@
 //! pilot run decides anything, so the estimate stays unbiased.
 
 mod bounds;
+mod budget;
 mod estimate;
 mod gpu;
 mod native;
 mod plan;
 mod points;
+mod tilted;
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -25,32 +27,58 @@ use serde::{Deserialize, Serialize};
 
 use crate::encode::{Srgb, pack};
 use crate::simd::Isa;
-use crate::{Backend, Frame, Layer, RenderError, Renderer, Stats, View, albedo, irradiance, pa};
+use crate::{Backend, Frame, Layer, RenderError, Renderer, Stats, View, albedo, irradiance};
 use bounds::Padded;
 use estimate::{Estimator, Row};
 use points::{Points, REPLICATES};
 
 /// What can be turned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Knobs {
     /// Samples per pixel and emitter in penumbra, 1..=2²⁰, rounded up to a multiple of the 16 scrambles.
     pub spp: u32,
     /// Seed of the scrambles.
     pub seed: u64,
+    /// In place of `spp`: enough samples for this root mean square error over penumbra pixels, in units of the brightest
+    /// unshadowed pixel, in (0, 1). What a pilot decides is frozen and counted as `spp`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target_error: Option<f64>,
+    /// In place of `spp`: as many samples as this many seconds allow, > 0; frozen and counted likewise, so that `spp`
+    /// replays the image to the byte. With `target_error` too, whichever is reached first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_limit_s: Option<f64>,
 }
 
 impl Default for Knobs {
     fn default() -> Self {
-        Self { spp: 64, seed: 1 }
+        Self { spp: 64, seed: 1, target_error: None, time_limit_s: None }
+    }
+}
+
+impl Knobs {
+    fn check(&self) -> Result<(), RenderError> {
+        let refuse = |text| Err(RenderError::Knob(text));
+        if !(1..=1 << 20).contains(&self.spp) {
+            return refuse(format!("spp = {}: 1 to 1048576 samples per pixel", self.spp));
+        }
+        if let Some(error) = self.target_error
+            && !(error > 0.0 && error < 1.0)
+        {
+            return refuse(format!("target_error = {error}: above 0 and below 1 (of full scale)"));
+        }
+        if let Some(limit) = self.time_limit_s
+            && !(limit > 0.0 && limit.is_finite())
+        {
+            return refuse(format!("time_limit_s = {limit}: a number of seconds above 0"));
+        }
+        Ok(())
     }
 }
 
 /// The renderer for `knobs` on `backend`.
 pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
-    if !(1..=1 << 20).contains(&knobs.spp) {
-        return Err(RenderError::Knob(format!("spp = {}: 1 to 1048576 samples per pixel", knobs.spp)));
-    }
+    knobs.check()?;
     let gpu = crate::gpu::choose(backend)?.map(|gpu| gpu::Sampler::new(gpu, gpu::WGSL)).transpose()?;
     Ok(Box::new(Mc::new(*knobs, gpu)))
 }
@@ -59,7 +87,7 @@ pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, Re
 struct Mc {
     knobs: Knobs,
     masks: HashMap<u64, Arc<Padded>>,
-    points: Option<(usize, Points)>,
+    points: Option<Arc<Points>>,
     /// E⁰ of each emitter at unit radiance, and what it was made for.
     lit: Vec<(String, Arc<Vec<f64>>)>,
     /// `None` draws on the CPU.
@@ -78,52 +106,52 @@ impl Mc {
         view: &View,
         layers: bool,
     ) -> Result<(Vec<Row>, Stats), RenderError> {
-        pa::check_view(theatre, view)?;
-        if matches!(theatre.ambient, Ambient::Dome { .. }) {
-            let reason = "ambient.model = \"dome\" is not drawn yet".into();
-            return Err(RenderError::Inapplicable { technique: "mc", reason });
-        }
         let mut stats = Stats::default();
-        let clock = Instant::now();
-        let samples = (self.knobs.spp as usize).div_ceil(REPLICATES);
-        self.prepare(theatre, view, samples);
+        let started = Instant::now();
+        self.prepare(theatre, view);
         let masks: Vec<_> = theatre.planes.iter().map(|p| self.masks[&p.mask.id].clone()).collect();
         let plan = plan::Plan::new(theatre, view, &masks)?;
-        let estimator = Estimator {
-            theatre,
-            plan: &plan,
-            masks: &masks,
-            lit: self.lit.iter().map(|(_, image)| image.as_slice()).collect(),
-            albedo: &albedo::on_grid(&theatre.screen, view),
-            points: self.points.as_ref().map(|(_, p)| p).expect("prepared"),
-            samples,
-            seed: points::fold(self.knobs.seed),
-            skip: view.skip,
-            layers,
+        let albedo = albedo::on_grid(&theatre.screen, view);
+        let lit: Vec<&[f64]> = self.lit.iter().map(|(_, image)| image.as_slice()).collect();
+        stats.steps_ms.push(("prepare".into(), started.elapsed().as_secs_f64() * 1e3));
+        let gpu = &mut self.gpu;
+        let mut draw = |points: &Points, rows: &[usize]| {
+            let estimator = Estimator {
+                theatre,
+                plan: &plan,
+                masks: &masks,
+                lit: &lit,
+                radiance: sources(theatre).map(|(_, radiance)| radiance).collect(),
+                albedo: &albedo,
+                points,
+                skip: view.skip,
+                layers,
+            };
+            let Some(gpu) = gpu else { return Ok(estimator.rows(rows)) };
+            let ids: Vec<_> = theatre.planes.iter().map(|p| p.mask.id).collect();
+            let scene = gpu.prepare(&plan, &ids, &masks, points)?;
+            estimator.rows_by(rows, |jobs| gpu.run(&plan, &scene, jobs))
         };
-        stats.steps_ms.push(("prepare".into(), clock.elapsed().as_secs_f64() * 1e3));
         let clock = Instant::now();
-        let rows = match &mut self.gpu {
-            None => estimator.rows(),
-            Some(gpu) => {
-                let ids: Vec<_> = theatre.planes.iter().map(|p| p.mask.id).collect();
-                let scene = gpu.prepare(&plan, &ids, &masks, estimator.points, samples, estimator.seed)?;
-                estimator.rows_by(|jobs| gpu.run(&scene, jobs))?
-            }
+        let samples = budget::freeze(&self.knobs, view.size[1], started, |p, rows| draw(&p, rows))?;
+        stats.steps_ms.push(("pilot".into(), clock.elapsed().as_secs_f64() * 1e3));
+        let clock = Instant::now();
+        let points = match &self.points {
+            Some(points) if points.samples == samples => points.clone(),
+            _ => Arc::new(Points::new(self.knobs.seed, samples)),
         };
+        let rows = draw(&points, &(0..view.size[1]).collect::<Vec<_>>())?;
+        self.points = Some(points);
         stats.steps_ms.push(("sample".into(), clock.elapsed().as_secs_f64() * 1e3));
         count(&rows, samples, plan.emitters.len(), view, &mut stats);
         Ok((rows, stats))
     }
 
-    /// Brings masks, points and E⁰ up to date with the theatre, and forgets what it no longer uses.
-    fn prepare(&mut self, theatre: &Theatre, view: &View, samples: usize) {
+    /// Brings masks and E⁰ up to date with the theatre, and forgets what it no longer uses.
+    fn prepare(&mut self, theatre: &Theatre, view: &View) {
         self.masks.retain(|id, _| theatre.planes.iter().any(|p| p.mask.id == *id));
         for plane in &theatre.planes {
             self.masks.entry(plane.mask.id).or_insert_with(|| Arc::new(Padded::new(&plane.mask)));
-        }
-        if self.points.as_ref().is_none_or(|(n, _)| *n != samples) {
-            self.points = Some((samples, Points::new(self.knobs.seed, samples)));
         }
         let lamp = &theatre.lamp;
         let old = std::mem::take(&mut self.lit);
@@ -150,10 +178,10 @@ impl Renderer for Mc {
         let n = view.size[0] * view.size[1];
         let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
         let mut names: Vec<String> = ["SE.R", "SE.G", "SE.B"].map(String::from).to_vec();
-        for emitter in &theatre.lamp.emitters {
+        for (name, _) in sources(theatre) {
             match coloured {
-                true => names.extend(["R", "G", "B"].map(|c| format!("Virr.{}.{c}", emitter.name))),
-                false => names.push(format!("Virr.{}", emitter.name)),
+                true => names.extend(["R", "G", "B"].map(|c| format!("Virr.{name}.{c}"))),
+                false => names.push(format!("Virr.{name}")),
             }
         }
         let mut planes: Vec<Vec<f32>> = (0..3 + names.len()).map(|_| Vec::with_capacity(n)).collect();
@@ -199,6 +227,15 @@ impl Renderer for Mc {
         }
         format!("native {} threads {}", rayon::current_num_threads(), Isa::detect().name())
     }
+}
+
+/// Name and radiance of everything that shines: the emitters, then the dome.
+fn sources(theatre: &Theatre) -> impl Iterator<Item = (&str, [f64; 3])> {
+    let dome = match theatre.ambient {
+        Ambient::Dome { radiance } => Some(("dome", radiance)),
+        _ => None,
+    };
+    theatre.lamp.emitters.iter().map(|e| (e.name.as_str(), e.radiance)).chain(dome)
 }
 
 /// Counters and the standard error's summary.

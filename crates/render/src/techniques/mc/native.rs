@@ -1,8 +1,9 @@
 //! The sampler on the CPU: sixteen lanes are the sixteen replicates, so that their sums never meet.
 
 use super::bounds::Padded;
-use super::plan::{Axis, EmitterPlan, Plan};
+use super::plan::{Axis, EmitterPlan, Plan, PlaneMap, Shape};
 use super::points::{self, Points, REPLICATES};
+use super::tilted::{Seen, Tilted};
 use crate::simd::Isa;
 
 /// Sums of one pixel's and one emitter's replicates, per channel.
@@ -18,10 +19,6 @@ pub struct Sampler<'a> {
     pub masks: &'a [std::sync::Arc<Padded>],
     /// The points.
     pub points: &'a Points,
-    /// Points per replicate.
-    pub samples: usize,
-    /// The folded seed.
-    pub seed: u32,
     /// Which planes the light passes.
     pub planes: std::ops::Range<usize>,
 }
@@ -68,24 +65,41 @@ impl Sampler<'_> {
         /// f32 sums of this many steps are added to f64 ones: rounding stays below 1e-6 however many points.
         const FLUSH: usize = 32;
         let emitter = &self.plan.emitters[k];
-        let key = points::stream(self.seed, (j * self.plan.size[0] + i) as u32, k as u32);
+        let key =
+            points::stream(points::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);
         let shifts: [[u32; REPLICATES]; points::DIMENSIONS] =
             std::array::from_fn(|d| std::array::from_fn(|r| points::shift(key, d, r)));
-        let dims = self.points.dims.each_ref().map(|d| &d.as_chunks::<REPLICATES>().0[..self.samples]);
+        let dims = self.points.dims.each_ref().map(|d| &d.as_chunks::<REPLICATES>().0[..self.points.samples]);
+        let planes = &emitter.planes[self.planes.clone()];
+        let tilted: Vec<Seen> = planes
+            .iter()
+            .filter_map(|map| match map {
+                PlaneMap::Parallel(_) => None,
+                PlaneMap::Tilted(map) => Some(map.seen(i, j)),
+            })
+            .collect();
         let mut sums = [[0f64; REPLICATES]; C];
         let mut n = 0;
-        while n < self.samples {
-            let end = self.samples.min(n + FLUSH);
+        while n < self.points.samples {
+            let end = self.points.samples.min(n + FLUSH);
             let mut part = [[0f32; REPLICATES]; C];
             let steps = dims.map(|d| &d[n..end]);
             for (((ux, uy), vx), vy) in steps[0].iter().zip(steps[1]).zip(steps[2]).zip(steps[3]) {
-                let u = [unit(ux, &shifts[0]), unit(uy, &shifts[1])];
+                let mut u = [unit(ux, &shifts[0]), unit(uy, &shifts[1])];
                 let v = match AREA {
                     true => [unit(vx, &shifts[2]), unit(vy, &shifts[3])],
                     false => [[0.0; REPLICATES]; 2],
                 };
-                let seen = self.visibility::<C, AREA>(emitter, i, j, &u, &v);
-                let weight = weight::<AREA>(emitter, i, j, &u, &v);
+                match emitter.shape {
+                    Shape::Rectangle => {}
+                    Shape::Disk => u = disk(&u),
+                    Shape::Dome => u = tangents(&disk(&u)),
+                }
+                let seen = self.visibility::<C, AREA>(emitter, &tilted, i, j, &u, &v);
+                let weight = match emitter.shape {
+                    Shape::Dome => [1.0; REPLICATES],
+                    _ => weight::<AREA>(emitter, i, j, &u, &v),
+                };
                 for c in 0..C {
                     for r in 0..REPLICATES {
                         part[c][r] += (seen[c][r] - v0[c]) * weight[r];
@@ -107,15 +121,26 @@ impl Sampler<'_> {
     fn visibility<const C: usize, const AREA: bool>(
         &self,
         emitter: &EmitterPlan,
+        tilted: &[Seen],
         i: usize,
         j: usize,
         u: &[Lanes; 2],
         v: &[Lanes; 2],
     ) -> [Lanes; C] {
         let mut seen = [[1f32; REPLICATES]; C];
+        let mut tilted = tilted;
         for (map, mask) in emitter.planes[self.planes.clone()].iter().zip(&self.masks[self.planes.clone()]) {
-            let x = texels::<AREA>(&map.columns[i], map.emitter[0], map.pixel[0], &u[0], &v[0]);
-            let y = texels::<AREA>(&map.rows[j], map.emitter[1], map.pixel[1], &u[1], &v[1]);
+            let [x, y] = match map {
+                PlaneMap::Parallel(map) => [
+                    texels::<AREA>(&map.columns[i], map.emitter[0], map.pixel[0], &u[0], &v[0]),
+                    texels::<AREA>(&map.rows[j], map.emitter[1], map.pixel[1], &u[1], &v[1]),
+                ],
+                PlaneMap::Tilted(map) => {
+                    let (seen, others) = tilted.split_first().expect("one a tilted plane");
+                    tilted = others;
+                    tilted_texels(map, seen, u, v)
+                }
+            };
             let mut at = [0u32; REPLICATES];
             for r in 0..REPLICATES {
                 at[r] = y[r] * mask.stride as u32 + x[r];
@@ -156,13 +181,73 @@ fn texels<const AREA: bool>(
         if AREA {
             t += pixel * v[r];
         }
-        // Written so that a NaN falls on the border too.
-        t = if t > axis.low { t } else { axis.low };
-        t = if t < axis.high { t } else { axis.high };
-        // SAFETY: low and high are small integers, and t is between them.
-        let t: i32 = unsafe { t.floor().to_int_unchecked() };
-        (t + axis.anchor) as u32
+        texel(axis, t)
     })
+}
+
+#[inline(always)]
+fn texel(axis: &Axis, t: f32) -> u32 {
+    // Written so that a NaN falls on the clear border too.
+    let t = if t > axis.low { t } else { axis.low };
+    let t = if t < axis.high { t } else { axis.high };
+    // SAFETY: low and high are small integers, and t is between them.
+    let t: i32 = unsafe { t.floor().to_int_unchecked() };
+    (t + axis.anchor) as u32
+}
+
+/// Padded texels of a tilted plane; see [`super::tilted`].
+#[inline(always)]
+fn tilted_texels(map: &Tilted, seen: &Seen, u: &[Lanes; 2], v: &[Lanes; 2]) -> [[u32; REPLICATES]; 2] {
+    let mut texels = [[0; REPLICATES]; 2];
+    let behind = if map.dome { 0.0 } else { 1.0 };
+    for r in 0..REPLICATES {
+        // y runs downwards on source and pixel, upwards in space.
+        let q = [map.emitter[0] * u[0][r], -(map.emitter[1] * u[1][r])];
+        let p = [map.pixel[0] * v[0][r], -(map.pixel[1] * v[1][r])];
+        let m = [0, 1].map(|d| p[d] + seen.ratio * (q[d] - p[d]));
+        let w = [0, 1].map(|d| q[d] - behind * p[d]);
+        let dot = |a: &[f32; 2], b: &[f32; 2]| a[0] * b[0] + a[1] * b[1];
+        let step = (seen.rest - dot(&map.normal, &m)) / (seen.depth + dot(&map.normal, &w));
+        let x = seen.x.offset + (dot(&map.right, &m) + step * (seen.along[0] + dot(&map.right, &w)));
+        let y = seen.y.offset + (dot(&map.down, &m) + step * (seen.along[1] + dot(&map.down, &w)));
+        texels[0][r] = texel(&seen.x, x);
+        texels[1][r] = texel(&seen.y, y);
+    }
+    texels
+}
+
+/// The square [−½, ½]² onto the disk of radius ½, areas in proportion (Shirley & Chiu 1997); sine and cosine of at most
+/// 45° by their series, the same on every backend.
+#[inline(always)]
+fn disk(u: &[Lanes; 2]) -> [Lanes; 2] {
+    let mut out = [[0f32; REPLICATES]; 2];
+    for r in 0..REPLICATES {
+        let (a, b) = (u[0][r], u[1][r]);
+        let steep = b.abs() > a.abs();
+        let (long, short) = if steep { (b, a) } else { (a, b) };
+        let t = if long == 0.0 { 0.0 } else { short / long };
+        let z = t * t;
+        let sin = t
+            * (std::f32::consts::FRAC_PI_4
+                + z * (-0.080_745_51 + z * (0.002_490_394_6 + z * (-3.657_620_4e-5 + z * 3.133_616_9e-7))));
+        let cos = 1.0
+            + z * (-0.308_425_14
+                + z * (0.015_854_344 + z * (-3.259_919e-4 + z * (3.590_860_4e-6 - z * 2.461_137e-8))));
+        let (along, across) = (long * cos, long * sin);
+        out[0][r] = if steep { across } else { along };
+        out[1][r] = if steep { along } else { across };
+    }
+    out
+}
+
+/// A point of the disk of radius ½ to the tangents of the direction above it: cosine-weighted over the hemisphere.
+#[inline(always)]
+fn tangents(u: &[Lanes; 2]) -> [Lanes; 2] {
+    let scale: Lanes = std::array::from_fn(|r| {
+        let rest = 1.0 - 4.0 * (u[0][r] * u[0][r] + u[1][r] * u[1][r]);
+        2.0 / (if rest > 1e-12 { rest } else { 1e-12 }).sqrt()
+    });
+    [0, 1].map(|d| std::array::from_fn(|r| u[d][r] * scale[r]))
 }
 
 /// 1 / (1 + tan²θ)²: both cosines over the squared distance, times the lamp's squared distance.

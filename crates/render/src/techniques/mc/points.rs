@@ -12,6 +12,10 @@ pub const DIMENSIONS: usize = 4;
 
 /// `samples` points per replicate.
 pub struct Points {
+    /// What they were made from.
+    pub seed: u64,
+    /// Points per replicate.
+    pub samples: usize,
     /// `dims[d][i * REPLICATES + r]` is coordinate `d` of point `i` of replicate `r`, as a fraction of 2³².
     pub dims: [Vec<u32>; DIMENSIONS],
 }
@@ -31,7 +35,7 @@ impl Points {
             }
             table
         });
-        Self { dims }
+        Self { seed, samples, dims }
     }
 }
 

@@ -169,6 +169,18 @@ fn gpu_stays_exact_under_stress() {
     }
 }
 
+/// Without puppets, or with one beside the beam, the lit screen is drawn.
+#[test]
+fn gpu_draws_an_empty_stage() {
+    let view = view(Pixel::Area);
+    let beside = plane(figure(40, 64, 1, 255), [40.0, 0.0, -0.2]);
+    for planes in [vec![], vec![beside]] {
+        let scene = theatre(planes, Ambient::None, [[2000.0; 3], [40.0; 3]]);
+        let drawn = on_gpu(&Shaders::default(), Knobs::default()).radiance(&scene, &view).unwrap();
+        assert_eq!(drawn.radiance, Native::new(Knobs::default()).radiance(&scene, &view).unwrap().radiance);
+    }
+}
+
 /// Bands of rows, as large images need, change no bit; nor does drawing a second time from what was kept.
 #[test]
 fn bands_change_nothing() {
