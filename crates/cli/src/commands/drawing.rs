@@ -72,7 +72,9 @@ impl Drawing {
     pub fn technique(&self) -> Technique {
         match self.technique {
             TechniqueName::Pa => Technique::Pa(pa::Knobs::default()),
-            TechniqueName::Mc => Technique::Mc(mc::Knobs { spp: self.spp, seed: self.seed, ..mc::Knobs::default() }),
+            TechniqueName::Mc => {
+                Technique::Mc(mc::Knobs { spp: self.spp, seed: self.seed, ..mc::Knobs::default() })
+            }
             TechniqueName::Oracle => Technique::Oracle(oracle::Knobs::default()),
         }
     }
