@@ -29,6 +29,8 @@ try {
   await page.getByTestId("login-password").fill(task.password);
   await page.getByTestId("login-submit").click();
   await page.getByTestId("login-password").waitFor({ state: "detached" });
+  await page.goto(`${task.base}/console/studies`);
+  await page.getByRole("link", { name: /puppets|screen/i }).first().waitFor();
   await shot("studies");
   await page.goto(`${task.base}/console/studies/${task.study}`);
   const rows = page.locator('[data-testid^="block-"]');

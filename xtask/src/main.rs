@@ -1,4 +1,4 @@
-//! Project tasks: `cargo xtask serve | test | shots`. Typed, no makefile beside it.
+//! Project tasks: `cargo xtask serve | test | pictures`. Typed, no makefile beside it.
 //!
 //! It depends on nothing that takes long to build: a fresh machine meets it first.
 
@@ -7,7 +7,7 @@ mod run;
 
 use std::path::PathBuf;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use clap::{Parser, Subcommand};
 
 use install::{Need, ensure};
@@ -34,6 +34,8 @@ enum Task {
     },
     /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests.
     Test,
+    /// Make the README's pictures anew; the trial's comes from the screenshots of the last `test`.
+    Pictures,
 }
 
 fn main() -> Result<()> {
@@ -42,6 +44,7 @@ fn main() -> Result<()> {
     match Cli::parse().task {
         Task::Serve { data, listen } => serve(&data, &listen),
         Task::Test => test(),
+        Task::Pictures => pictures(),
     }
 }
 
@@ -59,6 +62,40 @@ fn serve(data: &std::path::Path, listen: &str) -> Result<()> {
     if !status.success() {
         bail!("{} ended with {status}", binary.display());
     }
+    Ok(())
+}
+
+/// Builds the release binary and answers where it is.
+fn release() -> Result<PathBuf> {
+    step(
+        "build",
+        cargo(&["build", "--release", "--workspace", "--exclude", "xtask", "--exclude", "kelir-tests"]),
+    )?;
+    Ok(run::target_dir().join("release/kelir"))
+}
+
+/// The README's pictures, from the product itself.
+fn pictures() -> Result<()> {
+    ensure(&[Need::Node])?;
+    let folder = run::root().join("docs/pictures");
+    std::fs::create_dir_all(&folder)?;
+    let mut scene = std::process::Command::new(release()?);
+    scene.args([
+        "render",
+        "stimuli/scenes/pertemuan.toml",
+        "--technique",
+        "pa",
+        "--backend",
+        "cpu",
+        "--size",
+        "960x540",
+        "-o",
+    ]);
+    scene.arg(folder.join("scene.png"));
+    step("scene.png", scene)?;
+    let trial = run::root().join("tests/screenshots/participant-trial-2-1280x800.png");
+    std::fs::copy(&trial, folder.join("trial.png"))
+        .with_context(|| format!("{}: run `cargo xtask test` first", trial.display()))?;
     Ok(())
 }
 
