@@ -71,13 +71,30 @@ struct Estimate {
     deviation: Option<[[f64; REPLICATES]; 3]>,
 }
 
+/// Sums over sources of L · E in one channel, through one set of planes: of the replicates, and of their means.
+#[derive(Clone, Copy, Default)]
+struct Light {
+    replicates: [f64; REPLICATES],
+    mean: f64,
+}
+
 impl Estimate {
+    /// Mean of the replicates.
     fn mean(&self, c: usize) -> f64 {
-        self.base[c] + self.deviation.map_or(0.0, |d| d[c].iter().sum::<f64>() / REPLICATES as f64)
+        self.base[c] + self.deviation.as_ref().map_or(0.0, |d| d[c].iter().sum::<f64>() / REPLICATES as f64)
     }
 
-    fn replicate(&self, c: usize, r: usize) -> f64 {
-        self.base[c] + self.deviation.map_or(0.0, |d| d[c][r])
+    /// Adds `radiance` times this to `light`.
+    fn add_to(&self, light: &mut Light, c: usize, radiance: f64) {
+        light.mean += radiance * self.mean(c);
+        match &self.deviation {
+            None => light.replicates.iter_mut().for_each(|l| *l += radiance * self.base[c]),
+            Some(d) => light
+                .replicates
+                .iter_mut()
+                .zip(&d[c])
+                .for_each(|(l, deviation)| *l += radiance * (self.base[c] + deviation)),
+        }
     }
 }
 
@@ -152,7 +169,8 @@ impl Estimator<'_> {
         // With several planes the paper's ambient light needs each plane's own visibility too.
         let alone = matches!(self.theatre.ambient, Ambient::Paper { .. }) && self.masks.len() > 1;
         let subsets = 1 + if alone { self.masks.len() } else { 0 };
-        let mut estimates = Vec::with_capacity(emitters * subsets);
+        let (mut estimates, mut lights) =
+            (Vec::with_capacity(emitters * subsets), Vec::with_capacity(subsets));
         for i in 0..width {
             estimates.clear();
             let mut penumbra = false;
@@ -165,7 +183,7 @@ impl Estimator<'_> {
                     penumbra |= varies;
                 }
             }
-            self.finish(i, j, &estimates, penumbra, &mut row);
+            self.finish([i, j], &estimates, penumbra, &mut lights, &mut row);
         }
         row
     }
@@ -211,25 +229,37 @@ impl Estimator<'_> {
     }
 
     /// Radiance, standard error and layers of one pixel into `row`.
-    fn finish(&self, i: usize, j: usize, estimates: &[Estimate], penumbra: bool, row: &mut Row) {
+    fn finish(
+        &self,
+        [i, j]: [usize; 2],
+        estimates: &[Estimate],
+        penumbra: bool,
+        lights: &mut Vec<Light>,
+        row: &mut Row,
+    ) {
         let width = self.plan.size[0];
         let pixel = j * width + i;
         let sources = &self.radiance;
+        let sampled = estimates.iter().any(|e| e.deviation.is_some());
         let mut error = 0f64;
         for c in 0..3 {
             let reflect = f64::from(self.albedo.at(c, pixel)) / std::f64::consts::PI;
             let lit: f64 = sources.iter().enumerate().map(|(k, l)| l[c] * self.lit(k, pixel)).sum();
-            let lamp = |subset: usize, of: &dyn Fn(&Estimate) -> f64| -> f64 {
-                let estimates = &estimates[subset * sources.len()..];
-                sources.iter().zip(estimates).map(|(l, estimate)| l[c] * of(estimate)).sum()
-            };
-            let radiance =
-                |of: &dyn Fn(&Estimate) -> f64| reflect * self.irradiance(c, lit, &|s| lamp(s, of));
-            row.values[c * width + i] = radiance(&|e| e.mean(c)) as f32;
+            lights.clear();
+            lights.extend(estimates.chunks_exact(sources.len()).map(|estimates| {
+                let mut light = Light::default();
+                estimates.iter().zip(sources).for_each(|(e, l)| e.add_to(&mut light, c, l[c]));
+                light
+            }));
+            let radiance = reflect * self.irradiance(c, lit, |subset| lights[subset].mean);
+            row.values[c * width + i] = radiance as f32;
             row.brightest = row.brightest.max(reflect * lit);
-            if estimates.iter().any(|e| e.deviation.is_some()) {
-                let replicates: [f64; REPLICATES] = std::array::from_fn(|r| radiance(&|e| e.replicate(c, r)));
-                let se = standard_error(&replicates);
+            if sampled {
+                let mut replicates = [0.0; REPLICATES];
+                for (r, replicate) in replicates.iter_mut().enumerate() {
+                    *replicate = self.irradiance(c, lit, |subset| lights[subset].replicates[r]);
+                }
+                let se = reflect * standard_error(&replicates);
                 error = error.max(se);
                 if self.layers {
                     row.values[(3 + c) * width + i] = se as f32;
@@ -260,7 +290,7 @@ impl Estimator<'_> {
 
     /// The screen's irradiance in channel `c` with the ambient light: `lamp(0)` is Σ L_k E_k through all planes,
     /// `lamp(1 + i)` through plane i alone, `lit` without planes.
-    fn irradiance(&self, c: usize, lit: f64, lamp: &dyn Fn(usize) -> f64) -> f64 {
+    fn irradiance(&self, c: usize, lit: f64, lamp: impl Fn(usize) -> f64) -> f64 {
         let direct = lamp(0);
         match self.theatre.ambient {
             Ambient::Paper { k_d_m, s } if lit > 0.0 => {

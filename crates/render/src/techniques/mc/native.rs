@@ -67,8 +67,12 @@ impl Sampler<'_> {
         let emitter = &self.plan.emitters[k];
         let key =
             points::stream(points::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);
-        let shifts: [[u32; REPLICATES]; points::DIMENSIONS] =
-            std::array::from_fn(|d| std::array::from_fn(|r| points::shift(key, d, r)));
+        let mut shifts = [[0; REPLICATES]; points::DIMENSIONS];
+        for (d, shifts) in shifts.iter_mut().enumerate() {
+            for (r, shift) in shifts.iter_mut().enumerate() {
+                *shift = points::shift(key, d, r);
+            }
+        }
         let dims = self.points.dims.each_ref().map(|d| &d.as_chunks::<REPLICATES>().0[..self.points.samples]);
         let planes = &emitter.planes[self.planes.clone()];
         let tilted: Vec<Seen> = planes
@@ -83,8 +87,9 @@ impl Sampler<'_> {
         while n < self.points.samples {
             let end = self.points.samples.min(n + FLUSH);
             let mut part = [[0f32; REPLICATES]; C];
-            let steps = dims.map(|d| &d[n..end]);
-            for (((ux, uy), vx), vy) in steps[0].iter().zip(steps[1]).zip(steps[2]).zip(steps[3]) {
+            let [ux, uy, vx, vy] = dims;
+            let steps = ux[n..end].iter().zip(&uy[n..end]).zip(&vx[n..end]).zip(&vy[n..end]);
+            for (((ux, uy), vx), vy) in steps {
                 let mut u = [unit(ux, &shifts[0]), unit(uy, &shifts[1])];
                 let v = match AREA {
                     true => [unit(vx, &shifts[2]), unit(vy, &shifts[3])],
@@ -143,14 +148,16 @@ impl Sampler<'_> {
             };
             let mut at = [0u32; REPLICATES];
             for r in 0..REPLICATES {
-                at[r] = y[r] * mask.stride as u32 + x[r];
+                at[r] = y[r].wrapping_mul(mask.stride as u32).wrapping_add(x[r]);
             }
             for (c, seen) in seen.iter_mut().enumerate() {
                 let plane = if c < mask.channels { c } else { 0 } * mask.stride * mask.rows;
                 let codes = &mask.codes[plane..plane + mask.stride * mask.rows];
                 let mut code = [0u16; REPLICATES];
                 for r in 0..REPLICATES {
-                    code[r] = codes[at[r] as usize];
+                    debug_assert!((at[r] as usize) < codes.len());
+                    // SAFETY: both texels are clamped to the padded grid.
+                    code[r] = unsafe { *codes.get_unchecked(at[r] as usize) };
                 }
                 for r in 0..REPLICATES {
                     seen[r] *= f32::from(code[r]);
@@ -161,10 +168,16 @@ impl Sampler<'_> {
     }
 }
 
+// Plain loops over the lanes: a closure (array::from_fn) would be compiled without the caller's instruction set.
+
 /// Coordinates in [−½, ½): 24 bits, exact in f32 on every backend.
 #[inline(always)]
 fn unit(words: &[u32; REPLICATES], shift: &[u32; REPLICATES]) -> Lanes {
-    std::array::from_fn(|r| ((words[r] ^ shift[r]) as i32 >> 8) as f32 * (1.0 / 16_777_216.0))
+    let mut out = [0f32; REPLICATES];
+    for r in 0..REPLICATES {
+        out[r] = ((words[r] ^ shift[r]) as i32 >> 8) as f32 * (1.0 / 16_777_216.0);
+    }
+    out
 }
 
 /// Padded texels along one axis.
@@ -176,13 +189,15 @@ fn texels<const AREA: bool>(
     u: &Lanes,
     v: &Lanes,
 ) -> [u32; REPLICATES] {
-    std::array::from_fn(|r| {
+    let mut out = [0; REPLICATES];
+    for r in 0..REPLICATES {
         let mut t = axis.offset + emitter * u[r];
         if AREA {
             t += pixel * v[r];
         }
-        texel(axis, t)
-    })
+        out[r] = texel(axis, t);
+    }
+    out
 }
 
 #[inline(always)]
@@ -191,8 +206,10 @@ fn texel(axis: &Axis, t: f32) -> u32 {
     let t = if t > axis.low { t } else { axis.low };
     let t = if t < axis.high { t } else { axis.high };
     // SAFETY: low and high are small integers, and t is between them.
-    let t: i32 = unsafe { t.floor().to_int_unchecked() };
-    (t + axis.anchor) as u32
+    let whole: i32 = unsafe { t.to_int_unchecked() };
+    // Towards −∞, without the library's floor.
+    let floor = whole.wrapping_sub(i32::from(whole as f32 > t));
+    floor.wrapping_add(axis.anchor) as u32
 }
 
 /// Padded texels of a tilted plane; see [`super::tilted`].
@@ -204,9 +221,8 @@ fn tilted_texels(map: &Tilted, seen: &Seen, u: &[Lanes; 2], v: &[Lanes; 2]) -> [
         // y runs downwards on source and pixel, upwards in space.
         let q = [map.emitter[0] * u[0][r], -(map.emitter[1] * u[1][r])];
         let p = [map.pixel[0] * v[0][r], -(map.pixel[1] * v[1][r])];
-        let m = [0, 1].map(|d| p[d] + seen.ratio * (q[d] - p[d]));
-        let w = [0, 1].map(|d| q[d] - behind * p[d]);
-        let dot = |a: &[f32; 2], b: &[f32; 2]| a[0] * b[0] + a[1] * b[1];
+        let m = [p[0] + seen.ratio * (q[0] - p[0]), p[1] + seen.ratio * (q[1] - p[1])];
+        let w = [q[0] - behind * p[0], q[1] - behind * p[1]];
         let step = (seen.rest - dot(&map.normal, &m)) / (seen.depth + dot(&map.normal, &w));
         let x = seen.x.offset + (dot(&map.right, &m) + step * (seen.along[0] + dot(&map.right, &w)));
         let y = seen.y.offset + (dot(&map.down, &m) + step * (seen.along[1] + dot(&map.down, &w)));
@@ -214,6 +230,11 @@ fn tilted_texels(map: &Tilted, seen: &Seen, u: &[Lanes; 2], v: &[Lanes; 2]) -> [
         texels[1][r] = texel(&seen.y, y);
     }
     texels
+}
+
+#[inline(always)]
+fn dot(a: &[f32; 2], b: &[f32; 2]) -> f32 {
+    a[0] * b[0] + a[1] * b[1]
 }
 
 /// The square [−½, ½]² onto the disk of radius ½, areas in proportion (Shirley & Chiu 1997); sine and cosine of at most
@@ -243,18 +264,22 @@ fn disk(u: &[Lanes; 2]) -> [Lanes; 2] {
 /// A point of the disk of radius ½ to the tangents of the direction above it: cosine-weighted over the hemisphere.
 #[inline(always)]
 fn tangents(u: &[Lanes; 2]) -> [Lanes; 2] {
-    let scale: Lanes = std::array::from_fn(|r| {
+    let mut out = [[0f32; REPLICATES]; 2];
+    for r in 0..REPLICATES {
         let rest = 1.0 - 4.0 * (u[0][r] * u[0][r] + u[1][r] * u[1][r]);
-        2.0 / (if rest > 1e-12 { rest } else { 1e-12 }).sqrt()
-    });
-    [0, 1].map(|d| std::array::from_fn(|r| u[d][r] * scale[r]))
+        let scale = 2.0 / (if rest > 1e-12 { rest } else { 1e-12 }).sqrt();
+        out[0][r] = u[0][r] * scale;
+        out[1][r] = u[1][r] * scale;
+    }
+    out
 }
 
 /// 1 / (1 + tan²θ)²: both cosines over the squared distance, times the lamp's squared distance.
 #[inline(always)]
 fn weight<const AREA: bool>(e: &EmitterPlan, i: usize, j: usize, u: &[Lanes; 2], v: &[Lanes; 2]) -> Lanes {
     let (column, row) = (e.columns[i], e.rows[j]);
-    std::array::from_fn(|r| {
+    let mut out = [0f32; REPLICATES];
+    for r in 0..REPLICATES {
         let mut x = column - e.emitter[0] * u[0][r];
         let mut y = row - e.emitter[1] * u[1][r];
         if AREA {
@@ -262,6 +287,7 @@ fn weight<const AREA: bool>(e: &EmitterPlan, i: usize, j: usize, u: &[Lanes; 2],
             y += e.pixel[1] * v[1][r];
         }
         let w = 1.0 + (x * x + y * y);
-        1.0 / (w * w)
-    })
+        out[r] = 1.0 / (w * w);
+    }
+    out
 }
