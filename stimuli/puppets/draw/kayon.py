@@ -6,8 +6,9 @@ Run `python kayon.py` (numpy, scipy, shapely) to write ../kayon.svg. One half is
 import math
 from pathlib import Path
 
-from leather import Leather, comma, dot, drop, lozenge, petal, plain, ribbon, sickle, through, ukel, write
 from shapely.geometry import box
+
+from leather import Leather, comma, dot, drop, lozenge, petal, plain, ribbon, sickle, through, write
 
 SIZE = (1200, 1200)
 AXIS = 600
@@ -68,7 +69,8 @@ def gate(k):
         k.keep(along(pts), margin=3)
     for i in range(3):
         k.fit(sickle(0.6), 612 + 13 * i, 806 - 2 * i, -90, 9.5, least=0.5)
-        k.fit(sickle(0.6), 608 + 9 * i, 786 - 3 * i, -90, 7.5, least=0.5) if i < 2 else None
+        if i < 2:
+            k.fit(sickle(0.6), 608 + 9 * i, 786 - 3 * i, -90, 7.5, least=0.5)
     k.fit(drop(0.4), 610, 764, -90, 13)
     k.row(along([(606, 836), (660, 834)]), 11, dot(), 3.0)
     for y in (862, 884, 906, 928, 950):                                          # the door leaf and its jamb

@@ -5,7 +5,7 @@ Run `python kijang.py` (numpy, scipy, shapely) to write ../kijang.svg and print 
 
 from pathlib import Path
 
-from leather import Leather, comma, dot, drop, petal, plain, ribbon, through, ukel, write
+from leather import Leather, dot, drop, petal, plain, ribbon, through, ukel, write
 
 SIZE = (1240, 1360)
 

@@ -5,13 +5,11 @@ Units are SVG user units, y down. Points are (x, y), or (x, y, 0) for a corner. 
 """
 
 import math
-import random
 
 import numpy as np
+import shapely
 from scipy.ndimage import distance_transform_edt
-from shapely import contains_xy
 from shapely.geometry import LineString, Polygon
-from shapely.ops import unary_union
 from shapely.prepared import prep
 
 
@@ -262,20 +260,18 @@ class Leather:
             self.fit(motif, q.real, q.imag, a + turn, scale * (taper(s) if taper else 1), flip, least)
         return self
 
-    def lattice(self, area, pitch, motif, scale, turn=0.0, axis=0.0, stagger=True, least=0.8, origin=(0, 0)):
-        """Motifs on a lattice (dx, dy) turned by `axis`; `motif` may be a list whose members take turns."""
+    def lattice(self, area, pitch, motif, scale, turn=0.0, axis=0.0, stagger=True, least=0.8):
+        """Motifs on a lattice of pitch (dx, dy), turned by `axis`; every second row is shifted by half a pitch if `stagger`."""
         dx, dy = pitch
-        motifs = motif if isinstance(motif, list) else [(motif, scale, turn)]
         x0, y0, x1, y1 = area.bounds
         reach = int(math.hypot(x1 - x0, y1 - y0) / min(dx, dy)) + 2
         k = complex(math.cos(math.radians(axis)), math.sin(math.radians(axis)))
-        c = complex((x0 + x1) / 2 + origin[0], (y0 + y1) / 2 + origin[1])
+        c = complex((x0 + x1) / 2, (y0 + y1) / 2)
         for j in range(-reach, reach + 1):
             for i in range(-reach, reach + 1):
                 p = c + k * complex((i + (0.5 if stagger and j % 2 else 0)) * dx, j * dy)
                 if x0 <= p.real <= x1 and y0 <= p.imag <= y1:
-                    m, s, t = motifs[(i + 2 * j) % len(motifs)] if not stagger else motifs[j % len(motifs)]
-                    self.fit(m, p.real, p.imag, axis + t, s, False, least, area)
+                    self.fit(motif, p.real, p.imag, axis + turn, scale, False, least, area)
         return self
 
     def pack(self, area, largest, least, turn, gap=None, cell=2.0, spiral=30.0, hand=lambda x, y: False, small=9.0):
@@ -284,7 +280,7 @@ class Leather:
         x0, y0, x1, y1 = area.bounds
         xs, ys = np.arange(x0, x1, cell), np.arange(y0, y1, cell)
         gx, gy = np.meshgrid(xs, ys)
-        inside = np.pad(contains_xy(area, gx, gy), 1)
+        inside = np.pad(shapely.contains_xy(area, gx, gy), 1)
         room = distance_transform_edt(inside)[1:-1, 1:-1] * cell
         for q in self.polygons:
             if q.intersects(area):
@@ -316,7 +312,6 @@ def _push(room, gx, gy, poly):
     reach = 60
     near = (gx > x0 - reach) & (gx < x1 + reach) & (gy > y0 - reach) & (gy < y1 + reach)
     if near.any():
-        import shapely
         room[near] = np.minimum(room[near], shapely.distance(poly, shapely.points(gx[near], gy[near])))
 
 
@@ -349,7 +344,3 @@ def write(path, size, parts, title, fill="#1a120c"):
     text = "\n".join(out)
     path.write_text(text)
     return len(text)
-
-
-def rng(seed):
-    return random.Random(seed)

@@ -115,12 +115,10 @@ def robe():
 
     skirt = hide(through([(428, 700, 0), (392, 800), (360, 920), (318, 1060), (240, 1190), (150, 1262, 0), (300, 1290), (460, 1288), (620, 1282), (668, 1262, 0),
                           (660, 1120), (632, 960), (592, 820), (556, 700, 0)]), RED)
-    hem_line = along([(196, 1246), (300, 1264), (460, 1262), (620, 1256), (664, 1246)])
     hem = hide(through([(236, 1192, 0), (150, 1262, 0), (300, 1290), (460, 1288), (620, 1282), (668, 1262, 0), (668, 1196, 0), (600, 1216), (460, 1222), (320, 1214)]), AMBER)
     for i, (p, a, t) in enumerate(along([(226, 1236), (320, 1250), (460, 1255), (600, 1250), (654, 1238)]).walk(45, 14, 16)):
         hem.fit(ukel(), p.real, p.imag, a - 90 if i % 2 else a + 90, 22, flip=i % 2 == 0, least=0.6)
-        if i % 1 == 0:
-            hem.fit(dot(), p.real + 22, p.imag - 14 * (-1) ** i, 0, 4)
+        hem.fit(dot(), p.real + 22, p.imag - 14 * (-1) ** i, 0, 4)
     apron = hide(through([(466, 730, 0), (448, 900), (426, 1040), (414, 1150), (450, 1190), (492, 1206, 0), (540, 1188), (580, 1150), (576, 1040), (556, 900), (530, 730, 0)]), GREEN)
     apron.row(along([(470, 752), (464, 900), (443, 1040), (432, 1144), (460, 1176), (492, 1190), (534, 1174), (562, 1144), (560, 1040), (540, 900), (520, 752)]), 15.5, dot(), 4.2)
     for k, (y, r) in enumerate(((1132, 26), (1072, 25), (1014, 24), (958, 22), (906, 20), (858, 18), (814, 16), (776, 14))):  # the vine that climbs the apron
@@ -194,20 +192,21 @@ def hand(x, y, turn, flip=False):
 
 
 def sleeve(shoulder, elbow, wrist, droop, flip):
-    """Upper arm and the wide forearm sleeve; the hand, and the flower if it is the front one."""
+    """Upper arm, the wide forearm sleeve and its cuff."""
     sx, sy = shoulder
     ex, ey = elbow
     wx, wy = wrist
     mid = ((sx + ex) / 2, (sy + ey) / 2)
-    a = math.degrees(math.atan2(ey - sy, ex - sx))
     upper = hide(ribbon([shoulder, mid, elbow], [40, 74, 46], n=9), RED)
     for t in (0.42, 0.62):
         blossom(upper, sx + (ex - sx) * t, sy + (ey - sy) * t, 24)
     b = math.degrees(math.atan2(wy - ey, wx - ex))
+    m = -1 if flip else 1
     dx, dy = droop
-    lower = hide(through([polar(ex, ey, 24, b + 180), polar(ex, ey, 30, b + (90 if not flip else -90) * -1), polar(wx, wy, 26, b - (90 if not flip else -90)), (*polar(wx, wy, 30, b - (60 if not flip else -60)), 0),
-                          ((wx * 2 + dx) / 3 + (14 if not flip else -14), (wy * 2 + dy) / 3), (dx, dy, 0), ((dx + ex) / 2 + (8 if flip else -8), (dy + ey) / 2 + 28), polar(ex, ey, 26, b + (120 if not flip else -120))]), GREEN)
-    cuff_line = [polar(wx, wy, 20, b - (70 if not flip else -70)), ((wx * 2 + dx) / 3 - (4 if not flip else -4), (wy * 2 + dy) / 3), ((wx + 2 * dx) / 3 - (2 if not flip else -2), (wy + 2 * dy) / 3), (dx, dy - 12)]
+    lower = hide(through([
+        polar(ex, ey, 24, b + 180), polar(ex, ey, 30, b - 90 * m), polar(wx, wy, 26, b - 90 * m), (*polar(wx, wy, 30, b - 60 * m), 0),
+        ((wx * 2 + dx) / 3 + 14 * m, (wy * 2 + dy) / 3), (dx, dy, 0), ((dx + ex) / 2 - 8 * m, (dy + ey) / 2 + 28), polar(ex, ey, 26, b + 120 * m)]), GREEN)
+    cuff_line = [polar(wx, wy, 20, b - 70 * m), ((wx * 2 + dx) / 3 - 4 * m, (wy * 2 + dy) / 3), ((wx + 2 * dx) / 3 - 2 * m, (wy + 2 * dy) / 3), (dx, dy - 12)]
     cuff = hide(ribbon(cuff_line, [34, 44, 42, 20], n=9), AMBER, web=4.5)
     for i, (p, t, s) in enumerate(along(cuff_line).walk(33, 18, 30)):
         cuff.fit(ukel(), p.real, p.imag, t, 16, flip=i % 2 == 0, least=0.6)
