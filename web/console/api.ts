@@ -59,11 +59,17 @@ export interface Measured {
   floor: number | null;
 }
 
+/** Monte Carlo's own standard error, in the same units. */
+export interface StandardError {
+  rms_sampled: number;
+  max: number;
+}
+
 export interface Stimulus {
   pair: string;
   condition: string;
   sha256: string;
-  provenance: { technique?: string; error?: Measured | null; [fact: string]: unknown };
+  provenance: { technique?: string; error?: Measured | null; standard_error?: StandardError | null; [fact: string]: unknown };
 }
 
 export interface Results {

@@ -26,7 +26,7 @@ function card(stimulus: Stimulus): HTMLElement {
       "figcaption",
       {},
       h("strong", {}, stimulus.condition),
-      ...(error === null || error === undefined ? [h("span", { class: "fact" }, "error not measured")] : measured(error)),
+      ...errorOf(stimulus),
       h(
         "details",
         {},
@@ -35,6 +35,13 @@ function card(stimulus: Stimulus): HTMLElement {
       ),
     ),
   );
+}
+
+/** What is known of a stimulus's error: against a reference, or its own spread, or nothing (a picture from elsewhere). */
+function errorOf({ provenance: { error, standard_error: own } }: Stimulus): HTMLElement[] {
+  if (error) return measured(error);
+  if (!own) return [h("span", { class: "fact" }, "error not known")];
+  return [h("span", { class: "fact" }, "standard error where sampled: RMS ", number(significant(own.rms_sampled), own.rms_sampled), ", max ", number(significant(own.max), own.max), " of full scale")];
 }
 
 /** The error in a line: where shadows are soft, because that is where techniques differ. */

@@ -30,6 +30,9 @@ enum Command {
     /// Look at study files.
     #[command(subcommand)]
     Study(commands::study::Command),
+    /// Measure kelir itself: frames a second, the exactness of its numbers.
+    #[command(subcommand)]
+    Bench(commands::bench::Command),
     /// Judge the answers of a study, or numbers of your own.
     Stats(commands::stats::Args),
 }
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
         Command::Animate(args) => commands::animate::run(args),
         Command::Scene(command) => commands::scene::run(command),
         Command::Study(command) => commands::study::run(command),
+        Command::Bench(command) => commands::bench::run(command),
         Command::Stats(args) => commands::stats::run(args),
     };
     match done {

@@ -119,6 +119,8 @@ pub struct Provenance {
     pub camera: Option<Camera>,
     /// Error against the reference, where there is one, before the camera.
     pub error: Option<Measured>,
+    /// The image's own standard error before the camera, where the technique has one.
+    pub standard_error: Option<StandardError>,
     /// What was done and skipped, summed over frames.
     pub counts: BTreeMap<String, u64>,
 }
@@ -138,6 +140,53 @@ pub struct Measured {
     pub penumbra: Errors,
     /// The reference's own standard error, root mean square over the same penumbra pixels: what no measured error can go below.
     pub floor: Option<f64>,
+}
+
+/// Monte Carlo's own standard error of the irradiance, in units of the brightest unshadowed point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StandardError {
+    /// Root mean square over the sampled pixels and channels of all frames; elsewhere it is exactly 0.
+    pub rms_sampled: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+/// Sums of the standard errors in a frame's SE layers.
+#[derive(Default)]
+struct Spread {
+    squares: f64,
+    count: usize,
+    max: f64,
+    /// Whether there were SE layers at all.
+    known: bool,
+}
+
+impl Spread {
+    /// Adds the pixels that `counted` takes, as irradiance.
+    fn add(&mut self, frame: &Frame, albedo: &albedo::PixelAlbedo, counted: impl Fn(usize, f64) -> bool) {
+        for (c, name) in ["SE.R", "SE.G", "SE.B"].iter().enumerate() {
+            let Some(layer) = frame.layers.iter().find(|l| l.name == *name) else { continue };
+            self.known = true;
+            for (k, se) in layer.values.iter().enumerate() {
+                let se = f64::from(*se) * PI / f64::from(albedo.at(c, k));
+                if se.is_finite() && counted(k, se) {
+                    self.squares += se * se;
+                    self.count += 1;
+                    self.max = self.max.max(se);
+                }
+            }
+        }
+    }
+
+    fn root_mean_square(&self) -> f64 {
+        (self.squares / self.count.max(1) as f64).sqrt()
+    }
+
+    fn known(self, full_scale: f64) -> Option<StandardError> {
+        let error =
+            StandardError { rms_sampled: self.root_mean_square() / full_scale, max: self.max / full_scale };
+        self.known.then_some(error)
+    }
 }
 
 fn named<S: Serializer>(errors: &Errors, serializer: S) -> Result<S::Ok, S::Error> {
@@ -197,6 +246,7 @@ pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus
     let mut shown: Vec<String> = Vec::with_capacity(frames);
     let mut counts = BTreeMap::new();
     let mut last: Option<Theatre> = None;
+    let (mut spread, mut full_scale) = (Spread::default(), 0f64);
     for frame in 0..frames {
         progress(Progress { done: frame + 1, total, what: job.technique.name() });
         let theatre = theatre(job, frame);
@@ -207,7 +257,10 @@ pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus
             *counts.entry("frames_repeated".into()).or_insert(0) += 1;
             continue;
         }
-        let (blob, stats) = draw(job, drawing.as_mut(), &theatre, white)?;
+        let (blob, stats) = draw(job, drawing.as_mut(), &theatre, white, &mut spread)?;
+        if spread.known {
+            full_scale = full_scale.max(brightest(&theatre, &job.view));
+        }
         for (name, count) in stats.counts {
             *counts.entry(name).or_insert(0) += count;
         }
@@ -235,6 +288,7 @@ pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus
         output: job.output,
         camera: job.camera,
         error,
+        standard_error: spread.known(if full_scale > 0.0 { full_scale } else { 1.0 }),
         counts,
     };
     progress(Progress { done: total, total, what: "done" });
@@ -280,14 +334,23 @@ fn draw(
     drawing: &mut dyn Renderer,
     theatre: &Theatre,
     white: f64,
+    spread: &mut Spread,
 ) -> Result<(Blob, Stats), RenderError> {
     let view = &job.view;
-    if let Some(camera) = &job.camera {
-        let frame = drawing.radiance(theatre, view)?;
-        let photograph = camera.photograph(&frame, white)?;
-        return Ok((Blob::new(photograph.media_type, photograph.bytes), frame.stats));
-    }
     crate::pa::check_view(theatre, view)?;
+    // Display codes alone would not say how sure Monte Carlo is of them.
+    if job.camera.is_some() || matches!(job.technique, Technique::Mc(_)) {
+        let frame = drawing.radiance(theatre, view)?;
+        spread.add(&frame, &albedo::on_grid(&theatre.screen, view), |_, se| se > 0.0);
+        let blob = match &job.camera {
+            Some(camera) => {
+                let photograph = camera.photograph(&frame, white)?;
+                Blob::new(photograph.media_type, photograph.bytes)
+            }
+            None => Blob::new("image/png", encode::png(&encode::display(&frame, white), view.size)?),
+        };
+        return Ok((blob, frame.stats));
+    }
     let mut codes = vec![0; view.size[0] * view.size[1]];
     let stats = drawing.display(theatre, view, white, &mut codes)?;
     Ok((Blob::new("image/png", encode::png(&codes, view.size)?), stats))
@@ -313,7 +376,7 @@ fn measure(
 ) -> Result<Measured, RenderError> {
     let mut truth = renderer(reference, job.backend)?;
     let (mut ours, mut theirs, mut penumbra) = (Vec::new(), Vec::new(), Vec::new());
-    let mut variance = None;
+    let mut variance = Spread::default();
     let mut full_scale = 0f64;
     for (k, frame) in frames.iter().enumerate() {
         progress(k);
@@ -329,17 +392,7 @@ fn measure(
             theirs.push(*b);
             penumbra.push(marked[i % marked.len()]);
         }
-        for (c, name) in ["SE.R", "SE.G", "SE.B"].iter().enumerate() {
-            let Some(layer) = b.layers.iter().find(|l| l.name == *name) else { continue };
-            let (sum, count) = variance.get_or_insert((0f64, 0usize));
-            for (k, se) in layer.values.iter().enumerate().filter(|(k, _)| marked[*k]) {
-                let se = f64::from(*se) * PI / f64::from(albedo.at(c, k));
-                if se.is_finite() {
-                    *sum += se * se;
-                    *count += 1;
-                }
-            }
-        }
+        variance.add(&b, &albedo, |k, _| marked[k]);
     }
     let failed = |e: kelir_vision::errors::ErrorsError| RenderError::Encode(format!("measured error: {e}"));
     let full_scale = if full_scale > 0.0 { full_scale } else { 1.0 };
@@ -348,7 +401,7 @@ fn measure(
         frames,
         all: errors(&ours, &theirs, None, full_scale).map_err(failed)?,
         penumbra: errors(&ours, &theirs, Some(&penumbra), full_scale).map_err(failed)?,
-        floor: variance.map(|(sum, count)| (sum / count.max(1) as f64).sqrt() / full_scale),
+        floor: variance.known.then(|| variance.root_mean_square() / full_scale),
     })
 }
 

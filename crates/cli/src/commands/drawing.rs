@@ -23,6 +23,18 @@ pub struct Drawing {
     /// Seed of the sample points (mc): same seed and count, same bytes.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// In place of --spp: enough samples for this root mean square error over penumbra, in units of full scale (mc).
+    #[arg(long)]
+    pub target_error: Option<f64>,
+    /// In place of --spp: as many samples as this many seconds allow; the count is recorded and replays the image (mc).
+    #[arg(long, value_name = "SECONDS")]
+    pub time_limit: Option<f64>,
+    /// Split each emitter into K × K pieces (pa): 1 is the paper's way.
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    pub split: u32,
+    /// How the pieces of a split emitter weigh (pa): area tends to the geometric visibility, irradiance to what a meter reads.
+    #[arg(long, value_enum, default_value = "area")]
+    pub weights: WeightsName,
     /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 1920 wide.
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[usize; 2]>,
@@ -58,6 +70,15 @@ pub enum TechniqueName {
     Oracle,
 }
 
+/// Names of the weightings on the command line.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum WeightsName {
+    /// 1/k² each.
+    Area,
+    /// By unshadowed irradiance.
+    Irradiance,
+}
+
 /// Names of the pixel rules on the command line.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum PixelName {
@@ -71,10 +92,19 @@ impl Drawing {
     /// The technique with its knobs.
     pub fn technique(&self) -> Technique {
         match self.technique {
-            TechniqueName::Pa => Technique::Pa(pa::Knobs::default()),
-            TechniqueName::Mc => {
-                Technique::Mc(mc::Knobs { spp: self.spp, seed: self.seed, ..mc::Knobs::default() })
-            }
+            TechniqueName::Pa => Technique::Pa(pa::Knobs {
+                split: self.split,
+                weights: match self.weights {
+                    WeightsName::Area => pa::Weights::Area,
+                    WeightsName::Irradiance => pa::Weights::Irradiance,
+                },
+            }),
+            TechniqueName::Mc => Technique::Mc(mc::Knobs {
+                spp: self.spp,
+                seed: self.seed,
+                target_error: self.target_error,
+                time_limit_s: self.time_limit,
+            }),
             TechniqueName::Oracle => Technique::Oracle(oracle::Knobs::default()),
         }
     }

@@ -1,6 +1,7 @@
 //! One module a command.
 
 pub mod animate;
+pub mod bench;
 mod drawing;
 pub mod render;
 pub mod scene;
