@@ -83,11 +83,72 @@ export interface Results {
   other_versions?: Array<{ config_hash: string; sessions: number }>;
 }
 
+export interface Interval {
+  low: number;
+  high: number;
+  level?: number;
+}
+
+/** A share of choices with Wilson's interval, and one from resampled participants where they made several choices each. */
+export interface Proportion {
+  chosen: number;
+  trials: number;
+  proportion: number;
+  wilson: Interval;
+  by_participant: Interval | null;
+}
+
+export interface Coefficient extends Interval {
+  estimate: number;
+  standard_error: number;
+  p: number;
+}
+
+/** What is said of a block beside the paper's test; null where it is not defined, and then a note says why. */
+export interface Analysis {
+  effect: { d: number; d_interval: Interval; g: number; g_interval: Interval } | null;
+  equivalence: Array<{ bounds: { points: number } | { sd: number }; p: number; interval_90: Interval }>;
+  bayes: { bf01: number; bf10: number } | null;
+  power: Array<{ n: number; d: number; alpha: number; power: number }>;
+  proportion: Proportion | null;
+  intraclass: { icc: number; design_effect: number } | null;
+  robust_logit: { coefficients: Coefficient[] } | null;
+  mixed_logit: { coefficients: Coefficient[]; sigma: number } | null;
+  notes: string[];
+}
+
+export interface BlockReport extends Block {
+  p_holm: number | null;
+  analysis: Analysis;
+  by_pair: Array<{ id: string; target: Proportion | null }>;
+  left: Proportion | null;
+  rt_ms: { n: number; q1: number; median: number; q3: number } | null;
+}
+
+export interface Report {
+  blocks: BlockReport[];
+  blocks_with_excluded: BlockReport[] | null;
+  excluded: Array<{ session_id: string; reasons: Array<{ reason: string; trials?: number; allowed?: number; answered?: number }> }>;
+  scale: {
+    conditions: Array<{ condition: string; jod: number; low: number; high: number }>;
+    level: number;
+    replicates: number;
+    observers: number;
+  } | null;
+  scale_note: string | null;
+  methods: string[];
+  stimuli: Stimulus[];
+  kelir_version: string;
+  chain: { rows: number; head: string; broken: [number, string] | null };
+}
+
 const admin = "/api/v1/admin/studies";
 
 export const login = (password: string) => request<void>("/api/v1/login", { method: "POST", body: { password } });
 export const logout = () => request<void>("/api/v1/logout", { method: "POST" });
 export const fetchResults = (study: string) => request<Results>(`${admin}/${encodeURIComponent(study)}/results`);
+
+export const fetchReport = (study: string) => request<Report>(`${admin}/${encodeURIComponent(study)}/report`, { timeoutMs: 120_000 });
 
 /** The list, however it is wrapped. */
 export async function fetchStudies(): Promise<StudyRow[]> {
@@ -95,4 +156,4 @@ export async function fetchStudies(): Promise<StudyRow[]> {
   return Array.isArray(answer) ? answer : answer.studies;
 }
 
-export const csvAddress = (study: string, file: "responses" | "codebook") => `${admin}/${encodeURIComponent(study)}/${file}.csv`;
+export const csvAddress = (study: string, file: "responses" | "codebook" | "pairs") => `${admin}/${encodeURIComponent(study)}/${file}.csv`;

@@ -1,11 +1,12 @@
 /** One study: who took part, what they chose, what they were shown. */
 import { h } from "../shared/dom.ts";
 import { clockTime, count, fixed, pValue } from "../shared/format.ts";
-import { isTemporary } from "../shared/http.ts";
-import { type Block, csvAddress, fetchResults, fetchStudies, type Participants, type Results, type StudyRow } from "./api.ts";
+import { isTemporary, Refused } from "../shared/http.ts";
+import { type Block, csvAddress, fetchReport, fetchResults, fetchStudies, type Participants, type Results, type StudyRow } from "./api.ts";
 import { copyButton, number, tableText } from "./copy.ts";
 import { gallery } from "./gallery.ts";
 import { choiceDistribution } from "./plots.ts";
+import { drawReport } from "./report.ts";
 
 /** Between two looks at the server, ms. */
 const POLL_MS = 5000;
@@ -26,6 +27,25 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
     sections.set(name, { shown, element });
   };
 
+  // The full report resamples participants, which takes the server a while: it is asked for only when answers have come.
+  const report = h("section", { class: "report" }, h("h2", {}, "Beyond the t-test"), h("p", { class: "quiet" }, "Resampling participants; this takes a moment."));
+  let judged = "";
+  const judge = (results: Results) => {
+    const answers = JSON.stringify([results.blocks, results.stimuli]);
+    if (answers === judged) return;
+    judged = answers;
+    if (!report.isConnected) body.append(report);
+    fetchReport(id).then(
+      (found) => !signal.aborted && report.replaceChildren(...drawReport(found, Math.min(760, Math.max(280, body.clientWidth)))),
+      (error: unknown) => {
+        if (signal.aborted) return;
+        judged = "";
+        // A server without this route still has the paper's test.
+        if (error instanceof Refused && error.status === 404) report.remove();
+      },
+    );
+  };
+
   const look = () => Promise.all([fetchResults(id), fetchStudies()]);
   const draw = ([results, studies]: [Results, StudyRow[]]) => {
     document.title = `${results.title} · kelir`;
@@ -33,6 +53,7 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
     section("status", studies.find((row) => row.id === id)?.detail ?? null, () => status(studies.find((row) => row.id === id)));
     section("participants", results.participants, () => participants(results.participants, id));
     section("choices", results.blocks, () => choices(results.blocks));
+    judge(results);
     section("stimuli", results.stimuli, () => [h("h2", {}, "Stimuli"), ...(results.stimuli.length > 0 ? gallery(results.stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
     section("data", id, () => data(id));
     updated.textContent = `Updated ${clockTime(new Date())}`;
@@ -150,10 +171,10 @@ function resultsTable(blocks: readonly Block[]): HTMLTableElement {
 }
 
 function data(id: string): Node[] {
-  const link = (file: "responses" | "codebook", text: string) => h("a", { href: csvAddress(id, file), download: `${id}-${file}.csv` }, text);
+  const link = (file: "responses" | "codebook" | "pairs", text: string) => h("a", { href: csvAddress(id, file), download: `${id}-${file}.csv` }, text);
   return [
     h("h2", {}, "Data"),
-    h("p", {}, link("responses", "Responses (CSV)"), ": one row a trial, as it was stored. ", link("codebook", "Codebook (CSV)"), ": what each column means."),
+    h("p", {}, link("responses", "Responses (CSV)"), ": one row a trial, as it was stored. ", link("codebook", "Codebook (CSV)"), ": what each column means. ", link("pairs", "Pairs (CSV)"), ": the choices as pwcmp reads them."),
     h("p", { class: "quiet" }, "The same analysis from the command line: ", h("code", {}, `kelir stats ${id} --format csv`)),
   ];
 }

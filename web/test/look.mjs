@@ -69,7 +69,7 @@ async function console_(name, options, scheme) {
   for (const id of [study.id, "empty"]) {
     await page.goto(`${mock.url}/console/studies/${id}`);
     await page.getByText("Participants").first().waitFor();
-    await page.waitForTimeout(300);
+    await page.waitForTimeout(1000);
     await shot(`3-study-${id}`, true);
     if (await page.evaluate(() => document.documentElement.scrollWidth > innerWidth)) console.log(name, id, "scrolls sideways");
   }
@@ -79,6 +79,6 @@ async function console_(name, options, scheme) {
 
 for (const [name, options] of Object.entries(sizes)) {
   if (only !== "console") await participant(name, options);
-  if (only !== "participant") for (const scheme of ["light", "dark"]) await console_(name, options, scheme);
+  if (only !== "participant") for (const scheme of ["light", "dark"]) await console_(name, { ...options, deviceScaleFactor: 1 }, scheme);
 }
 await browser.close();
