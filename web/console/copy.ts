@@ -16,7 +16,10 @@ export function copyButton(label: string, text: () => string, attributes: Record
 
 /** Tab-separated text of a table, numbers in full precision: what a spreadsheet or R reads. */
 export function tableText(table: HTMLTableElement): string {
-  const cell = (td: HTMLTableCellElement) => td.querySelector<HTMLDataElement>("data.copy")?.value ?? td.textContent?.trim() ?? "";
+  const cell = (td: HTMLTableCellElement) => {
+    const exact = [...td.querySelectorAll<HTMLDataElement>("data.copy")].map((data) => data.value);
+    return exact.length > 0 ? exact.join(" ") : (td.textContent?.trim() ?? "");
+  };
   return [...table.rows].map((row) => [...row.cells].map(cell).join("\t")).join("\n");
 }
 

@@ -58,7 +58,7 @@ function errors(blocks: readonly BlockReport[], report: Report, width: number): 
   if (all.length === 0) return [heading, h("p", { class: "empty" }, "No stimulus with answers has a measured error yet.")];
   return [
     heading,
-    h("figure", { class: "wide" }, errorPlot(all, width), h("figcaption", { class: "quiet" }, "Each stimulus: its error against the reference (of simulated photographs before the camera), and the share that preferred it with Wilson's 95% interval. Circles are the target condition; lines join pairs. Dotted: chance.")),
+    h("figure", { class: "wide" }, errorPlot(all, width), h("figcaption", { class: "quiet" }, "Each stimulus: its error against the reference (of simulated photographs before the camera), and the share that preferred it with Wilson's 95% interval. Lines join the two of a pair, named at the target's. Dotted: chance.")),
   ];
 }
 

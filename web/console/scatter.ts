@@ -30,17 +30,38 @@ export function points(blocks: readonly BlockReport[], stimuli: readonly Stimulu
   );
 }
 
-/** The plot, `width` CSS pixels wide; the two stimuli of a pair are joined. */
+/** The marks of conditions: the target's circle, and a shape for each other one. */
+const SHAPES: ReadonlyArray<(x: number, y: number) => SVGElement> = [
+  (cx, cy) => s("circle", { cx, cy, r: 5.5 }),
+  (x, y) => s("rect", { x: x - 5, y: y - 5, width: 10, height: 10 }),
+  (x, y) => s("path", { d: `M${x} ${y - 6.5}l6.2 11h-12.4z` }),
+  (x, y) => s("path", { d: `M${x} ${y - 7}l7 7-7 7-7-7z` }),
+];
+
+function mark(p: Pick<Point, "condition" | "target">, others: readonly string[], x: number, y: number): SVGElement {
+  const shape = SHAPES[p.target ? 0 : 1 + (others.indexOf(p.condition) % (SHAPES.length - 1))] ?? SHAPES[0];
+  const element = (shape as (x: number, y: number) => SVGElement)(x, y);
+  element.setAttribute("class", p.target ? "dot target" : "dot");
+  return element;
+}
+
+/** The plot, `width` CSS pixels wide; the two stimuli of a pair are joined, and the pair is named at its target. */
 export function errorPlot(all: readonly Point[], width: number): SVGSVGElement {
-  const height = Math.round(Math.min(380, Math.max(280, width * 0.48)));
-  const box = { left: 52, right: width - 16, top: 22, bottom: height - 52 };
+  const height = Math.round(Math.min(400, Math.max(330, width * 0.5)));
+  const box = { left: 46, right: width - 14, top: 58, bottom: height - 52 };
   const logs = all.map((p) => Math.log10(p.error));
-  const [low, high] = [Math.floor(Math.min(...logs) - 0.15), Math.ceil(Math.max(...logs) + 0.15)];
+  const [low, high] = [Math.floor(Math.min(...logs) - 0.1), Math.ceil(Math.max(...logs) + 0.1)];
   const x = (error: number) => box.left + ((Math.log10(error) - low) / (high - low)) * (box.right - box.left);
   const y = (share: number) => box.bottom - share * (box.bottom - box.top);
   const description = all.map((p) => `${p.pair}, ${p.condition}: error ${significant(p.error)}, preferred by ${fixed(100 * p.share, 0)}%`).join("; ");
   const svg = figure(width, height, "Error of each stimulus against the share of participants who preferred it", `${description}.`);
 
+  const others = [...new Set(all.filter((p) => !p.target).map((p) => p.condition))];
+  let at = box.left + 6;
+  for (const p of [...new Map(all.map((p) => [`${p.target} ${p.condition}`, p])).values()].sort((a, b) => Number(b.target) - Number(a.target))) {
+    svg.append(mark(p, others, at, 9), s("text", { class: p.target ? "name target" : "name", x: at + 12, y: 13 }, p.condition));
+    at += 12 + 7.5 * p.condition.length + 26;
+  }
   for (const share of [0, 0.25, 0.5, 0.75, 1]) {
     svg.append(
       s("line", { class: share === 0.5 ? "chance" : "grid", x1: box.left, x2: box.right, y1: y(share), y2: y(share) }),
@@ -48,34 +69,38 @@ export function errorPlot(all: readonly Point[], width: number): SVGSVGElement {
     );
   }
   for (let decade = low; decade <= high; decade++) {
-    const at = x(10 ** decade);
+    const tick = x(10 ** decade);
     svg.append(
-      s("line", { class: "axis", x1: at, x2: at, y1: box.bottom, y2: box.bottom + 5 }),
-      s("text", { class: "tick", x: at, y: box.bottom + 20, "text-anchor": decade === high ? "end" : "middle" }, significant(10 ** decade, 1)),
+      s("line", { class: "axis", x1: tick, x2: tick, y1: box.bottom, y2: box.bottom + 5 }),
+      s("text", { class: "tick", x: tick, y: box.bottom + 20, "text-anchor": decade === high ? "end" : decade === low ? "start" : "middle" }, significant(10 ** decade, 1)),
     );
   }
   svg.append(
     s("line", { class: "axis", x1: box.left, x2: box.right, y1: box.bottom, y2: box.bottom }),
     s("text", { class: "label", x: (box.left + box.right) / 2, y: height - 8, "text-anchor": "middle" }, "RMSE in penumbra, share of full scale (log axis)"),
-    s("text", { class: "label", x: 4, y: 12 }, "preferred it"),
+    s("text", { class: "label", x: 0, y: box.top - 18 }, "share that preferred it"),
   );
   for (const pair of new Set(all.map((p) => p.pair))) {
     const [a, b] = all.filter((p) => p.pair === pair);
     if (a !== undefined && b !== undefined) svg.append(s("line", { class: "join", x1: x(a.error), y1: y(a.share), x2: x(b.error), y2: y(b.share) }));
   }
-  const labels: Array<{ x: number; y: number }> = [];
-  for (const p of [...all].sort((a, b) => a.share - b.share)) {
-    const [cx, cy] = [x(p.error), y(p.share)];
-    const right = cx < (box.left + box.right) / 2;
-    // A label moves up until it stands free of those before it.
-    let at = cy + 4;
-    while (labels.some((l) => Math.abs(l.x - cx) < 150 && Math.abs(l.y - at) < 15)) at -= 15;
-    labels.push({ x: cx, y: at });
-    svg.append(
-      s("line", { class: p.target ? "whisker target" : "whisker", x1: cx, x2: cx, y1: y(p.interval.low), y2: y(p.interval.high) }),
-      p.target ? s("circle", { class: "dot target", cx, cy, r: 5.5 }) : s("rect", { class: "dot", x: cx - 5, y: cy - 5, width: 10, height: 10 }),
-      s("text", { class: p.target ? "name target" : "name", x: right ? cx + 11 : cx - 11, y: at, "text-anchor": right ? "start" : "end" }, `${p.pair} · ${p.condition}`),
-    );
+  for (const p of all) {
+    svg.append(s("line", { class: p.target ? "whisker target" : "whisker", x1: x(p.error), x2: x(p.error), y1: y(p.interval.low), y2: y(p.interval.high) }));
+  }
+  for (const p of all) svg.append(mark(p, others, x(p.error), y(p.share)));
+
+  // Names from the top down, each at its point or as near below the last one as it can stand.
+  const named = all.filter((p) => p.target).sort((a, b) => b.share - a.share);
+  const taken: Array<{ left: number; right: number; y: number }> = [];
+  for (const p of named) {
+    const cx = x(p.error);
+    const length = 7.2 * p.pair.length;
+    const left = cx - box.left > length + 14 && cx > (box.left + box.right) / 2;
+    const span = left ? { left: cx - 12 - length, right: cx - 12 } : { left: cx + 12, right: cx + 12 + length };
+    let level = y(p.share) + 4;
+    while (taken.some((t) => t.left < span.right && span.left < t.right && Math.abs(t.y - level) < 15)) level += 5;
+    taken.push({ ...span, y: level });
+    svg.append(s("text", { class: "name", x: left ? cx - 12 : cx + 12, y: level, "text-anchor": left ? "end" : "start" }, p.pair));
   }
   return svg;
 }
