@@ -34,7 +34,10 @@ async function copy(text: string, at: HTMLElement): Promise<void> {
   setTimeout(() => delete at.dataset.copied, 1200);
 }
 
-document.addEventListener("click", (event) => {
-  const data = event.target instanceof Element ? event.target.closest<HTMLDataElement>("data.copy") : null;
-  if (data !== null && getSelection()?.isCollapsed !== false) void copy(data.value, data);
-});
+/** Makes every `number` on the page copy itself when clicked, unless the click ends a selection. */
+export function copyOnClick(): void {
+  document.addEventListener("click", (event) => {
+    const data = event.target instanceof Element ? event.target.closest<HTMLDataElement>("data.copy") : null;
+    if (data !== null && getSelection()?.isCollapsed !== false) void copy(data.value, data);
+  });
+}

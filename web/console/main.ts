@@ -2,7 +2,7 @@
 import { h } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
 import { fetchStudies, login, logout, type StudyRow } from "./api.ts";
-import { number } from "./copy.ts";
+import { copyOnClick, number } from "./copy.ts";
 import { showStudy, statusText } from "./study.ts";
 import "./style.css";
 
@@ -130,5 +130,6 @@ document.addEventListener("click", (event) => {
   event.preventDefault();
   go(anchor.pathname + anchor.hash);
 });
+copyOnClick();
 addEventListener("popstate", () => void show());
 void show();
