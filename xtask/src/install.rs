@@ -35,7 +35,8 @@ impl Need {
         match self {
             Self::Node => &[],
             Self::Vulkan => &["mesa-vulkan-drivers", "libvulkan1"],
-            Self::Chromium => &["chromium"],
+            // Without recommended packages Chromium comes without a font, and a page without text.
+            Self::Chromium => &["chromium", "fonts-dejavu-core"],
             Self::Sqlite => &["sqlite3"],
         }
     }
