@@ -107,7 +107,8 @@ fn the_same_job_gives_the_same_bytes_and_says_where_they_came_from() {
     assert!(0.0 < own.rms_sampled && own.rms_sampled < own.max && own.max < 0.5, "{own:?}");
     // Sixteen times the samples: a spread at most half as large. PA has no random numbers and no spread.
     let finer = Technique::Mc(mc::Knobs { spp: 256, ..mc::Knobs::default() });
-    let finer = run(&mut job("", finer, Output::Still), &mut |_| ()).unwrap().provenance.standard_error.unwrap();
+    let finer =
+        run(&mut job("", finer, Output::Still), &mut |_| ()).unwrap().provenance.standard_error.unwrap();
     assert!(finer.rms_sampled < 0.5 * own.rms_sampled, "{finer:?} against {own:?}");
     assert_eq!(one.provenance.standard_error, None);
     let error = other.provenance.error.unwrap();
