@@ -131,6 +131,19 @@ fn tilted_texels(map: Map, seen: Seen, u: vec2<f32>, v: vec2<f32>) -> vec2<i32> 
     );
 }
 
+// Place on box * pixel, and a point of emitter and pixel that has it; `Window` in native.rs.
+fn split(u: f32, v: f32, emitter: f32, pixel: f32) -> vec3<f32> {
+    let share = abs(u);
+    let top = share * max(emitter, pixel);
+    let slope = 0.5 * (emitter + pixel) - sqrt(2.0 * emitter * pixel * (0.5 - share));
+    let distance = select(slope, top, top <= 0.5 * abs(emitter - pixel));
+    let place = select(distance, -distance, u < 0.0);
+    let from_u = max((place - 0.5 * pixel) / emitter, -0.5);
+    let to_u = min((place + 0.5 * pixel) / emitter, 0.5);
+    let on = 0.5 * (from_u + to_u) + v * (to_u - from_u);
+    return vec3<f32>(place, on, clamp((place - emitter * on) / pixel, -0.5, 0.5));
+}
+
 fn disk(u: vec2<f32>) -> vec2<f32> {
     let steep = abs(u.y) > abs(u.x);
     let long = select(u.x, u.y, steep);
@@ -171,6 +184,10 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     );
     let table = params.samples * REPLICATES;
     let coloured = params.channels == 3u;
+    var placed = params.area == 1u && emitter.shape == 0u && job.first < job.end;
+    if placed {
+        placed = maps[job.emitter * params.planes + job.first].tilted == 0u;
+    }
     var total = vec3<f32>(0.0);
     var part = vec3<f32>(0.0);
     for (var s = 0u; s < params.samples; s++) {
@@ -182,6 +199,15 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                 unit(points[2u * table + at] ^ shifts.z),
                 unit(points[3u * table + at] ^ shifts.w),
             );
+        }
+        var place = vec2<f32>(0.0);
+        if placed {
+            let first = maps[job.emitter * params.planes + job.first];
+            let x = split(u.x, v.x, first.emitter_x, first.pixel_x);
+            let y = split(u.y, v.y, first.emitter_y, first.pixel_y);
+            place = vec2<f32>(x.x, y.x);
+            u = vec2<f32>(x.y, y.y);
+            v = vec2<f32>(x.z, y.z);
         }
         if emitter.shape >= 1u {
             u = disk(u);
@@ -196,6 +222,10 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
             var at: vec2<i32>;
             if map.tilted == 1u {
                 at = tilted_texels(map, seen_by[index * params.planes + p], u, v);
+            } else if placed && p == job.first {
+                let x = axes[m * lines + job.x];
+                let y = axes[m * lines + params.width + job.y];
+                at = vec2<i32>(texel(x, x.offset + place.x), texel(y, y.offset + place.y));
             } else {
                 let x = axes[m * lines + job.x];
                 let y = axes[m * lines + params.width + job.y];

@@ -82,6 +82,12 @@ impl Sampler<'_> {
                 PlaneMap::Tilted(map) => Some(map.seen(i, j)),
             })
             .collect();
+        let windows = match planes.first() {
+            Some(PlaneMap::Parallel(map)) if AREA && emitter.shape == Shape::Rectangle => {
+                Some([0, 1].map(|d| Window::new(map.emitter[d], map.pixel[d])))
+            }
+            _ => None,
+        };
         let mut sums = [[0f64; REPLICATES]; C];
         let mut n = 0;
         while n < self.points.samples {
@@ -91,7 +97,7 @@ impl Sampler<'_> {
             let steps = ux[n..end].iter().zip(&uy[n..end]).zip(&vx[n..end]).zip(&vy[n..end]);
             for (((ux, uy), vx), vy) in steps {
                 let mut u = [unit(ux, &shifts[0]), unit(uy, &shifts[1])];
-                let v = match AREA {
+                let mut v = match AREA {
                     true => [unit(vx, &shifts[2]), unit(vy, &shifts[3])],
                     false => [[0.0; REPLICATES]; 2],
                 };
@@ -100,7 +106,14 @@ impl Sampler<'_> {
                     Shape::Disk => u = disk(&u),
                     Shape::Dome => u = tangents(&disk(&u)),
                 }
-                let seen = self.visibility::<C, AREA>(emitter, &tilted, i, j, &u, &v);
+                let mut t = [[0.0; REPLICATES]; 2];
+                if let Some(windows) = &windows {
+                    for d in 0..2 {
+                        windows[d].split(&mut u[d], &mut v[d], &mut t[d]);
+                    }
+                }
+                let first = windows.is_some().then_some(&t);
+                let seen = self.visibility::<C, AREA>(emitter, &tilted, first, [i, j], &u, &v);
                 let weight = match emitter.shape {
                     Shape::Dome => [1.0; REPLICATES],
                     _ => weight::<AREA>(emitter, i, j, &u, &v),
@@ -127,20 +140,23 @@ impl Sampler<'_> {
         &self,
         emitter: &EmitterPlan,
         tilted: &[Seen],
-        i: usize,
-        j: usize,
+        mut first: Option<&[Lanes; 2]>,
+        [i, j]: [usize; 2],
         u: &[Lanes; 2],
         v: &[Lanes; 2],
     ) -> [Lanes; C] {
         let mut seen = [[1f32; REPLICATES]; C];
         let mut tilted = tilted;
         for (map, mask) in emitter.planes[self.planes.clone()].iter().zip(&self.masks[self.planes.clone()]) {
-            let [x, y] = match map {
-                PlaneMap::Parallel(map) => [
+            let [x, y] = match (map, first.take()) {
+                (PlaneMap::Parallel(map), Some(t)) => {
+                    [placed(&map.columns[i], &t[0]), placed(&map.rows[j], &t[1])]
+                }
+                (PlaneMap::Parallel(map), None) => [
                     texels::<AREA>(&map.columns[i], map.emitter[0], map.pixel[0], &u[0], &v[0]),
                     texels::<AREA>(&map.rows[j], map.emitter[1], map.pixel[1], &u[1], &v[1]),
                 ],
-                PlaneMap::Tilted(map) => {
+                (PlaneMap::Tilted(map), _) => {
                     let (seen, others) = tilted.split_first().expect("one a tilted plane");
                     tilted = others;
                     tilted_texels(map, seen, u, v)
@@ -200,6 +216,16 @@ fn texels<const AREA: bool>(
     out
 }
 
+/// Padded texels of places that are known relative to the box's centre.
+#[inline(always)]
+fn placed(axis: &Axis, t: &Lanes) -> [u32; REPLICATES] {
+    let mut out = [0; REPLICATES];
+    for r in 0..REPLICATES {
+        out[r] = texel(axis, axis.offset + t[r]);
+    }
+    out
+}
+
 #[inline(always)]
 fn texel(axis: &Axis, t: f32) -> u32 {
     // Written so that a NaN falls on the clear border too.
@@ -210,6 +236,60 @@ fn texel(axis: &Axis, t: f32) -> u32 {
     // Towards −∞, without the library's floor.
     let floor = whole.wrapping_sub(i32::from(whole as f32 > t));
     floor.wrapping_add(axis.anchor) as u32
+}
+
+/// One axis of box ⊛ pixel: the trapezoid over which t = emitter · u + pixel · v is spread.
+///
+/// What a plane lets through depends on t alone, so t takes one well stratified coordinate, by the inverse of the
+/// trapezoid's distribution, and the other coordinate chooses among the (u, v) that have this t: together they are
+/// uniform over emitter and pixel, as they were.
+struct Window {
+    emitter: f32,
+    pixel: f32,
+    /// The longer of both, half of where the top ends, half of where the slopes end, and twice their product.
+    long: f32,
+    flat: f32,
+    half: f32,
+    twice: f32,
+    per_emitter: f32,
+    per_pixel: f32,
+}
+
+impl Window {
+    fn new(emitter: f32, pixel: f32) -> Self {
+        Self {
+            emitter,
+            pixel,
+            long: emitter.max(pixel),
+            flat: 0.5 * (emitter - pixel).abs(),
+            half: 0.5 * (emitter + pixel),
+            twice: 2.0 * emitter * pixel,
+            per_emitter: 1.0 / emitter,
+            per_pixel: 1.0 / pixel,
+        }
+    }
+
+    /// `u` and `v` in [−½, ½) are independent coordinates on entry, and the sample's on return, with its `t`.
+    #[inline(always)]
+    fn split(&self, u: &mut Lanes, v: &mut Lanes, t: &mut Lanes) {
+        for r in 0..REPLICATES {
+            let (share, side) = (u[r].abs(), v[r]);
+            let top = share * self.long;
+            let slope = self.half - (self.twice * (0.5 - share)).sqrt();
+            let distance = if top <= self.flat { top } else { slope };
+            let place = if u[r] < 0.0 { -distance } else { distance };
+            let from = (place - 0.5 * self.pixel) * self.per_emitter;
+            let to = (place + 0.5 * self.pixel) * self.per_emitter;
+            let from = if from > -0.5 { from } else { -0.5 };
+            let to = if to < 0.5 { to } else { 0.5 };
+            let on = 0.5 * (from + to) + side * (to - from);
+            let within = (place - self.emitter * on) * self.per_pixel;
+            let within = if within > -0.5 { within } else { -0.5 };
+            t[r] = place;
+            u[r] = on;
+            v[r] = if within < 0.5 { within } else { 0.5 };
+        }
+    }
 }
 
 /// Padded texels of a tilted plane; see [`super::tilted`].
