@@ -1,6 +1,6 @@
 //! The radiance that the display shows as white.
 
-use kelir_scene::{Exposure, Scene, Theatre};
+use kelir_scene::{Ambient, Exposure, Scene, Theatre};
 use rayon::prelude::*;
 
 use crate::{View, albedo, irradiance::UnitRows};
@@ -22,6 +22,11 @@ pub fn white<'a>(theatres: impl IntoIterator<Item = &'a Theatre>, view: &View) -
             .iter()
             .map(|e| (e.radiance, UnitRows::new(&e.shape, lamp.position_m, &theatre.screen, view.size)))
             .collect();
+        // The dome over an empty stage: π times its radiance everywhere.
+        let dome = match theatre.ambient {
+            Ambient::Dome { radiance } => radiance.map(|l| l * std::f64::consts::PI),
+            _ => [0.0; 3],
+        };
         let row = |j: usize| {
             let (mut unit, mut sums) = (vec![0f64; w], [0, 1, 2].map(|_| vec![0f64; w]));
             for (radiance, rows) in &units {
@@ -30,8 +35,9 @@ pub fn white<'a>(theatres: impl IntoIterator<Item = &'a Theatre>, view: &View) -
                     sum.iter_mut().zip(&unit).for_each(|(s, u)| *s += radiance * u);
                 }
             }
-            let lit =
-                |c: usize, i: usize| sums[c][i] * f64::from(albedo.at(c, j * w + i)) / std::f64::consts::PI;
+            let lit = |c: usize, i: usize| {
+                (sums[c][i] + dome[c]) * f64::from(albedo.at(c, j * w + i)) / std::f64::consts::PI
+            };
             (0..3).flat_map(|c| (0..w).map(move |i| (c, i))).fold(0f64, |m, (c, i)| m.max(lit(c, i)))
         };
         brightest = brightest.max((0..h).into_par_iter().map(row).reduce(|| 0.0, f64::max));

@@ -41,8 +41,9 @@ pub fn unit(shape: &EmitterShape, lamp_m: DVec3, p_m: DVec2) -> f64 {
     }
 }
 
-/// The differential element and the parallel rectangle, corner by corner.
-fn lambert(c: DVec2, a: f64, b: f64, h: f64) -> f64 {
+/// The differential element and the parallel rectangle, corner by corner: centre at lateral offset `c`, half-sides `a`, `b`, height `h`.
+/// Absolute error of a few 1e-16, so that it serves sums that add up to about one.
+pub(crate) fn lambert(c: DVec2, a: f64, b: f64, h: f64) -> f64 {
     let corner = |x: f64, y: f64| {
         let (rx, ry) = (x.hypot(h), y.hypot(h));
         0.5 * (x / rx * (y / rx).atan() + y / ry * (x / ry).atan())

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use kelir_scene::{Scene, Theatre};
+use kelir_scene::{Ambient, Scene, Theatre};
 use kelir_vision::errors::{Errors, errors};
 use serde::{Serialize, Serializer, ser::SerializeStruct};
 use sha2::{Digest, Sha256};
@@ -413,10 +413,14 @@ fn brightest(theatre: &Theatre, view: &View) -> f64 {
         .iter()
         .map(|e| (e.radiance, UnitRows::new(&e.shape, lamp.position_m, &theatre.screen, view.size)))
         .collect();
+    let dome = match theatre.ambient {
+        Ambient::Dome { radiance } => radiance.map(|l| l * PI),
+        _ => [0.0; 3],
+    };
     let mut unit = vec![0.0; view.size[0]];
     let mut most = 0f64;
     for j in 0..view.size[1] {
-        let mut sums = vec![[0f64; 3]; view.size[0]];
+        let mut sums = vec![dome; view.size[0]];
         for (radiance, rows) in &units {
             rows.row(j, &mut unit);
             for (sum, unit) in sums.iter_mut().zip(&unit) {

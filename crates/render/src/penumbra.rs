@@ -3,6 +3,8 @@
 use glam::DVec2;
 use kelir_scene::{Mask, Plane, Theatre};
 
+use crate::pa::plan::{Piece, is_tilted};
+use crate::pa::tilted::Frame;
 use crate::pa::window::Windows;
 use crate::project::{ShadowBox, pixel_m};
 use crate::{Pixel, View};
@@ -55,16 +57,42 @@ impl Edges {
     }
 }
 
-/// One flag a pixel, row-major. Planes must be parallel to the screen; disks count as their bounding squares.
+/// One flag a pixel, row-major. Disks count as their bounding squares, and what a pixel sees of a tilted plane as the box around it: there
+/// some pixels more are in.
 pub fn mask(theatre: &Theatre, view: &View) -> Vec<bool> {
     let [w, h] = view.size;
     let mut out = vec![false; w * h];
     let half = theatre.lamp.emitters.iter().map(|e| DVec2::from(e.shape.half_extent_m()));
     let sides = 2.0 * half.fold(DVec2::ZERO, DVec2::max);
     for plane in &theatre.planes {
-        add(theatre, view, plane, sides, &mut out);
+        if is_tilted(plane) {
+            add_tilted(theatre, view, plane, sides, &mut out);
+        } else {
+            add(theatre, view, plane, sides, &mut out);
+        }
     }
     out
+}
+
+fn add_tilted(theatre: &Theatre, view: &View, plane: &Plane, sides_m: DVec2, out: &mut [bool]) {
+    let edges = Edges::new(&plane.mask);
+    let frame = Frame::new(plane);
+    let lamp = Piece { emitter: 0, centre_m: theatre.lamp.position_m, size_m: sides_m.into(), weight: 1.0 };
+    let half = if view.pixel == Pixel::Area { 0.5 } else { 0.0 };
+    let width = view.size[0];
+    for (k, out) in out.iter_mut().enumerate() {
+        let (i, j) = ((k % width) as f64, (k / width) as f64);
+        let at = |d: f64| pixel_m(&theatre.screen, view.size, i + d, j + d);
+        let [low, high] = frame.range([at(-half), at(half)], &lamp);
+        // The frame of clear texels shifts the grid by one.
+        let range = |low: f64, high: f64, n: usize| {
+            [
+                (low + 1.0).floor().clamp(0.0, n as f64) as usize,
+                (high + 1.0).ceil().clamp(0.0, n as f64) as usize,
+            ]
+        };
+        *out |= edges.differ(range(low.x, high.x, edges.size[0]), range(low.y, high.y, edges.size[1]));
+    }
 }
 
 fn add(theatre: &Theatre, view: &View, plane: &Plane, sides_m: DVec2, out: &mut [bool]) {

@@ -1,6 +1,6 @@
 //! Where a point of the screen sees an emitter on an occluder plane that is parallel to the screen.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use kelir_scene::{Plane, Screen};
 
 /// The affine map from a screen point to the centre of its box in one plane's texel coordinates, and the box's size per
@@ -38,6 +38,12 @@ impl ShadowBox {
     pub fn centre(&self, p_m: DVec2) -> DVec2 {
         self.scale * p_m + self.offset
     }
+}
+
+/// A vector of the puppet's own frame in the theatre's: R_y(tilt_deg[1]) · R_x(tilt_deg[0]), right-handed.
+pub fn turned(plane: &Plane, v: DVec3) -> DVec3 {
+    let [about_x, about_y] = plane.tilt_deg.map(f64::to_radians);
+    DMat3::from_rotation_y(about_y) * (DMat3::from_rotation_x(about_x) * v)
 }
 
 /// The centre of pixel (i, j) of `size` on the screen, metres; fractional pixels are points inside a pixel.

@@ -4,8 +4,10 @@
 //! masks are constant, so both visibilities are finite sums over such cells: of areas (geometric), or of Lambert's
 //! formula (irradiance). An `area` pixel seen through one plane is a finite sum too: a texel's overlap with the box,
 //! averaged over the pixel, has a closed form. Several planes, and irradiance, are averaged over the pixel by midpoints,
-//! whose number is doubled until two levels differ by less than the tolerance.
+//! whose number is doubled until two levels differ by less than the tolerance. So are disks (cut into strips) and tilted
+//! planes (texels projected onto the lamp's plane and clipped to each piece of the emitter).
 
+mod pieces;
 mod renderer;
 mod visibility;
 
@@ -14,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::{RenderError, Renderer};
 
 pub use renderer::Oracle;
-pub use visibility::{Point, Visibility, visibility};
+pub use visibility::{Point, Visibility, dome, visibility};
 
 /// What can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
 //! The oracle as a technique.
 
-use kelir_scene::{Ambient, EmitterShape, Theatre};
+use kelir_scene::{Ambient, Theatre};
 use rayon::prelude::*;
 
 use super::{Knobs, Point, Visibility, visibility};
@@ -25,18 +25,11 @@ impl Oracle {
     fn check(theatre: &Theatre, view: &View) -> Result<(), RenderError> {
         crate::pa::check_view(theatre, view)?;
         let refuse = |reason| Err(RenderError::Inapplicable { technique: "oracle", reason });
-        for (k, e) in theatre.lamp.emitters.iter().enumerate() {
-            if let EmitterShape::Disk { .. } = e.shape {
-                return refuse(format!("lamp.emitters[{k}].shape = \"disk\": not supported yet"));
-            }
-        }
         for (i, plane) in theatre.planes.iter().enumerate() {
-            if plane.tilt_deg != [0.0; 2] {
-                return refuse(format!("puppets[{i}].tilt_deg = {:?}: not supported yet", plane.tilt_deg));
+            if plane.tilt_deg != [0.0; 2] && matches!(theatre.ambient, Ambient::Dome { .. }) {
+                let rule = "ambient.model = \"dome\" is drawn with upright puppets only";
+                return refuse(format!("puppets[{i}].tilt_deg = {:?}: {rule}", plane.tilt_deg));
             }
-        }
-        if let Ambient::Dome { .. } = theatre.ambient {
-            return refuse("ambient.model = \"dome\" is not supported yet".into());
         }
         Ok(())
     }
@@ -87,18 +80,27 @@ impl Oracle {
             .iter()
             .map(|e| irradiance::unit(&e.shape, theatre.lamp.position_m, centre))
             .collect();
+        let dome = match theatre.ambient {
+            Ambient::Dome { radiance } => {
+                let through = super::dome(theatre, centre);
+                [0, 1, 2].map(|c| radiance[c] * through[c])
+            }
+            _ => [0.0; 3],
+        };
         let radiance = [0, 1, 2].map(|c| {
             let weight = |e: usize| theatre.lamp.emitters[e].radiance[c] * units[e];
             let all: f64 = emitters.clone().map(weight).sum();
+            let albedo = f64::from(albedo.at(c, i + j * view.size[0]));
+            let ambient_light = albedo * dome[c];
             if all == 0.0 {
-                return 0.0;
+                return ambient_light;
             }
             let mean = |of: &[Visibility]| {
                 let one =
                     |e: usize| if self.knobs.geometric { of[e].geometric[c] } else { of[e].irradiance[c] };
                 emitters.clone().map(|e| weight(e) * one(e)).sum::<f64>() / all
             };
-            let lit = f64::from(albedo.at(c, i + j * view.size[0])) * all / std::f64::consts::PI;
+            let lit = albedo * all / std::f64::consts::PI;
             let v = mean(&visibilities);
             let shade = match theatre.ambient {
                 Ambient::Paper { k_d_m, s } => {
@@ -107,7 +109,7 @@ impl Oracle {
                 }
                 _ => v,
             };
-            lit * shade
+            lit * shade + ambient_light
         });
         (radiance, visibilities)
     }

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use kelir_scene::{EmitterShape, Plane, Theatre};
 
+use super::pieces;
 use crate::{Pixel, View, irradiance, project::pixel_m};
 
 /// Where on the screen.
@@ -86,9 +87,18 @@ fn segments(grids: &[Grid], axis: usize, half: f64) -> Vec<[f64; 2]> {
     lines.windows(2).map(|w| [w[0], w[1]]).filter(|[a, b]| b > a).collect()
 }
 
-/// Both visibilities of emitter `e` at a point; the emitter must be a rectangle and every plane parallel to the screen.
-fn at(theatre: &Theatre, e: usize, p: DVec2) -> Visibility {
-    let (lamp, shape) = (theatre.lamp.position_m, &theatre.lamp.emitters[e].shape);
+/// Both visibilities of emitter `e` at a point.
+fn at(theatre: &Theatre, e: usize, p: DVec2, tolerance: f64) -> Visibility {
+    let (lamp, shape) = (theatre.lamp.position_m, theatre.lamp.emitters[e].shape);
+    let upright = theatre.planes.iter().all(|plane| plane.tilt_deg == [0.0; 2]);
+    match shape {
+        EmitterShape::Rectangle { .. } if upright => upright_at(theatre, &shape, lamp, p),
+        _ => pieces::at(theatre, &shape, p, tolerance, upright),
+    }
+}
+
+/// Both visibilities of the rectangle `shape` around `lamp` through planes parallel to the screen: cells of the overlaid grids.
+pub(super) fn upright_at(theatre: &Theatre, shape: &EmitterShape, lamp: DVec3, p: DVec2) -> Visibility {
     let grids: Vec<Grid> = theatre.planes.iter().map(|plane| Grid::new(plane, lamp, p)).collect();
     let [a, b] = shape.half_extent_m();
     let (xs, ys) = (segments(&grids, 0, a), segments(&grids, 1, b));
@@ -96,6 +106,7 @@ fn at(theatre: &Theatre, e: usize, p: DVec2) -> Visibility {
         xs.iter().map(|[x0, x1]| grids.iter().map(|g| g.texel(0, 0.5 * (x0 + x1))).collect()).collect();
     let mut result = Visibility::default();
     let whole = irradiance::unit(shape, lamp, p);
+    let area_m2 = shape.area_m2();
     for [y0, y1] in ys {
         let rows: Vec<_> = grids.iter().map(|g| g.texel(1, 0.5 * (y0 + y1))).collect();
         for ([x0, x1], columns) in xs.iter().zip(&columns) {
@@ -108,7 +119,7 @@ fn at(theatre: &Theatre, e: usize, p: DVec2) -> Visibility {
             if tau == [0.0; 3] {
                 continue;
             }
-            let area = (x1 - x0) * (y1 - y0) / shape.area_m2();
+            let area = (x1 - x0) * (y1 - y0) / area_m2;
             let cell = EmitterShape::Rectangle { size_m: [x1 - x0, y1 - y0] };
             let centre = lamp + DVec3::new(0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.0);
             let light = irradiance::unit(&cell, centre, p) / whole;
@@ -163,18 +174,17 @@ fn over_one_plane(theatre: &Theatre, e: usize, centre: DVec2, sides: DVec2) -> [
     shadow.map(|s| 1.0 - s)
 }
 
-/// Visibilities of emitter `e`; means over pixels of several planes, and irradiance means, to `tolerance`. `planes` must be parallel to the
-/// screen and the emitter a rectangle.
+/// Visibilities of emitter `e`; what is no finite sum (several planes in `area` pixels, disks, tilted planes) to `tolerance`.
 pub fn visibility(theatre: &Theatre, e: usize, point: Point, tolerance: f64) -> Visibility {
     match point {
-        Point::At(p) => at(theatre, e, p),
+        Point::At(p) => at(theatre, e, p, tolerance),
         Point::Over(centre, sides) => {
             let mean = |n: usize| {
                 let mut sum = Visibility::default();
                 for j in 0..n {
                     for i in 0..n {
                         let part = (DVec2::new(i as f64, j as f64) + 0.5) / n as f64 - 0.5;
-                        let v = at(theatre, e, centre + part * sides);
+                        let v = at(theatre, e, centre + part * sides, tolerance);
                         for c in 0..3 {
                             sum.geometric[c] += v.geometric[c] / (n * n) as f64;
                             sum.irradiance[c] += v.irradiance[c] / (n * n) as f64;
@@ -197,10 +207,52 @@ pub fn visibility(theatre: &Theatre, e: usize, point: Point, tolerance: f64) -> 
                 }
                 n *= 2;
             }
-            if theatre.planes.len() == 1 {
+            let rectangle = matches!(theatre.lamp.emitters[e].shape, EmitterShape::Rectangle { .. });
+            if let [plane] = &theatre.planes[..]
+                && plane.tilt_deg == [0.0; 2]
+                && rectangle
+            {
                 result.geometric = over_one_plane(theatre, e, centre, sides);
             }
             result
         }
     }
+}
+
+/// Share of a uniform dome's irradiance, per channel, that planes parallel to the screen let through to `p`: their grids laid over
+/// each other on a plane at unit distance, each cell weighed by Lambert's formula.
+pub fn dome(theatre: &Theatre, p: DVec2) -> [f64; 3] {
+    let lamp = DVec3::new(p.x, p.y, -1.0);
+    let grids: Vec<Grid> = theatre.planes.iter().map(|plane| Grid::new(plane, lamp, p)).collect();
+    let lines = |axis: usize| {
+        let mut lines = Vec::new();
+        for g in &grids {
+            let count = [g.plane.mask.width, g.plane.mask.height][axis];
+            lines.extend((0..=count).map(|k| g.origin[axis] + g.step[axis] * k as f64));
+        }
+        lines.sort_by(f64::total_cmp);
+        lines
+    };
+    let mut through = [1.0; 3];
+    let (xs, ys) = (lines(0), lines(1));
+    for y in ys.windows(2).filter(|w| w[1] > w[0]) {
+        let rows: Vec<_> = grids.iter().map(|g| g.texel(1, 0.5 * (y[0] + y[1]))).collect();
+        for x in xs.windows(2).filter(|w| w[1] > w[0]) {
+            let mut tau = [1.0; 3];
+            for (g, row) in grids.iter().zip(&rows) {
+                if let (Some(i), Some(j)) = (g.texel(0, 0.5 * (x[0] + x[1])), row) {
+                    (0..3).for_each(|c| tau[c] *= g.plane.mask.transmittance(c, i, *j));
+                }
+            }
+            if tau == [1.0; 3] {
+                continue;
+            }
+            let middle = DVec2::new(0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
+            let cell = irradiance::lambert(middle, 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0]), 1.0);
+            for (through, tau) in through.iter_mut().zip(tau) {
+                *through -= (1.0 - tau) * cell / std::f64::consts::PI;
+            }
+        }
+    }
+    through
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use kelir_scene::{Albedo, Emitter, Screen, Theatre};
+use kelir_scene::{Albedo, Ambient, Emitter, Screen, Theatre};
 use rayon::prelude::*;
 
 use crate::View;
@@ -17,6 +17,8 @@ pub struct Background {
     key: Key,
     /// The lit screen's radiance: three planes, or one where all three would be equal.
     pub lit: Vec<Vec<f32>>,
+    /// The albedo, kept where the dome needs it.
+    pub albedo: Option<PixelAlbedo>,
     /// The last emitter that shines: its share of the light is what the others leave.
     pub rest: usize,
     /// Each emitter's share of the lit screen's light: one plane a channel, or one where all emitters have the same
@@ -88,7 +90,8 @@ struct Row<'a> {
 impl Background {
     /// Whether this one still serves.
     pub fn serves(&self, theatre: &Theatre, view: &View) -> bool {
-        self.key.holds(theatre, view)
+        let dome = matches!(theatre.ambient, Ambient::Dome { .. });
+        self.key.holds(theatre, view) && (!dome || self.albedo.is_some())
     }
 
     /// Draws the screen without puppets.
@@ -144,7 +147,8 @@ impl Background {
         };
         rows.into_par_iter().enumerate().for_each_init(Default::default, draw);
         let key = Key { screen: theatre.screen.clone(), lamp_m, emitters: emitters.clone(), view: *view };
-        Self { key, lit, rest, share, encoded: None }
+        let albedo = matches!(theatre.ambient, Ambient::Dome { .. }).then_some(albedo);
+        Self { key, lit, albedo, rest, share, encoded: None }
     }
 
     /// Radiance of channel `c`.

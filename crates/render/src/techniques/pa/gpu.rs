@@ -16,7 +16,7 @@ use kelir_scene::{Ambient, Mask, Texels, Theatre};
 use super::background::Background;
 use super::plan::Plan;
 use super::window::Windows;
-use super::{Knobs, Weights};
+use super::{Knobs, Weights, plan, shadow_map};
 use crate::encode::Srgb;
 use crate::gpu::{Gpu, Output};
 use crate::{Frame, Layer, RenderError, Renderer, Stats, View};
@@ -227,6 +227,7 @@ impl OnGpu {
             stats.steps_ms.push((name.into(), clock.elapsed().as_secs_f64() * 1e3));
             clock = Instant::now();
         };
+        let theatre = &*shadow_map::seen(theatre, &self.knobs);
         let frame = FramePlan::new(theatre, view, &self.knobs)?;
         step(&mut stats, "plan");
         let built = self.build_tables(theatre, &frame.plan)?;
@@ -592,6 +593,7 @@ fn dispatch(
 
 impl FramePlan {
     fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
+        plan::refuse_on_gpu(theatre)?;
         let plan = Plan::new(theatre, view, knobs)?;
         let (mut lookups, mut passes, mut windows) = (Vec::new(), Vec::new(), Vec::new());
         let (mut pieces, mut most) = (Vec::new(), 0);

@@ -5,16 +5,22 @@
 //! bilinear the mean is a finite sum, so the native code draws it exactly. Drawn with n × n sub-samples instead, a straight
 //! edge errs by at most 1 / (8 w n²) where the box is w pixels wide.
 //!
+//! A disk is cut into strips, a tilted plane is looked up piece by piece ([`tilted`]), and light from the dome is a convolution
+//! ([`dome`]).
+//!
 //! With several planes the mean over the pixel of a product is not the product of means: where a box is narrower than
 //! four pixels each pixel is cut into n × n parts, n = ⌈4 / w⌉ (at most 4). What is left is a covariance inside a part of
 //! a pixel, at most ¼ of the product of both planes' change across it.
 
 mod background;
+mod dome;
 mod gpu;
 mod native;
-mod plan;
+pub(crate) mod plan;
 mod rows;
+mod shadow_map;
 pub mod table;
+pub(crate) mod tilted;
 pub mod window;
 
 use serde::{Deserialize, Serialize};
@@ -33,11 +39,17 @@ pub struct Knobs {
     pub split: u32,
     /// How pieces weigh.
     pub weights: Weights,
+    /// A disk is cut into this many strips (1..=1024), each a rectangle of the strip's own area.
+    pub strips: u32,
+    /// Boxes on the puppets themselves, or the paper's shadow map.
+    pub variant: Variant,
+    /// Samples a side of the shadow map (16..=8192).
+    pub map_size: u32,
 }
 
 impl Default for Knobs {
     fn default() -> Self {
-        Self { split: 1, weights: Weights::Area }
+        Self { split: 1, weights: Weights::Area, strips: 64, variant: Variant::Exact, map_size: 1024 }
     }
 }
 
@@ -47,8 +59,25 @@ impl Knobs {
         if !(1..=64).contains(&self.split) {
             return Err(RenderError::Knob(format!("split = {}: from 1 to 64", self.split)));
         }
+        if !(1..=1024).contains(&self.strips) {
+            return Err(RenderError::Knob(format!("strips = {}: from 1 to 1024", self.strips)));
+        }
+        if !(16..=8192).contains(&self.map_size) {
+            return Err(RenderError::Knob(format!("map_size = {}: from 16 to 8192", self.map_size)));
+        }
         Ok(())
     }
+}
+
+/// Where tables come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Variant {
+    /// The puppets' own texels.
+    #[default]
+    Exact,
+    /// The paper's: a map of `map_size` × `map_size` point samples, as the lamp's centre sees the puppets.
+    ShadowMap,
 }
 
 /// How the pieces of a split emitter weigh.

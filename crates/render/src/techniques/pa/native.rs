@@ -4,15 +4,18 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
+use glam::DVec2;
 use kelir_scene::{Ambient, Mask, Theatre};
 use rayon::prelude::*;
 
 use super::background::Background;
+use super::dome::{self, DomeLight, DomeMap};
 use super::plan::{Lookup, Plan};
 use super::rows::Combined;
 use super::table::{Sums, Table};
-use super::{Knobs, Weights};
+use super::{Knobs, Weights, shadow_map};
 use crate::encode::{Srgb, pack};
+use crate::project::pixel_m;
 use crate::simd::{Isa, multiversion};
 use crate::{Frame, Layer, RenderError, Renderer, Stats, View, ambient};
 
@@ -25,6 +28,7 @@ pub struct Native {
     knobs: Knobs,
     tables: Vec<Kept>,
     background: Option<Background>,
+    domes: Vec<DomeMap>,
 }
 
 /// A table and the mask it was made from.
@@ -85,6 +89,8 @@ struct Job<'a> {
     shades: usize,
     /// Whether the sink wants every emitter's visibility.
     layers: bool,
+    /// Light from the dome, where there is one.
+    dome: Option<DomeLight<'a>>,
 }
 
 /// Counts of one band.
@@ -116,6 +122,8 @@ struct Scratch {
     one: Vec<f32>,
     /// Product of the planes' transmittances for one piece, at sub-pixels.
     product: Vec<f32>,
+    /// Its sum over each pixel's sub-pixels.
+    mean: Vec<f32>,
     /// Visibility of emitter e in channel c at `(e * channels + c) * width`.
     visibility: Vec<f32>,
     /// For paper ambient with several planes: Σ share · opacity of plane i in shade channel c at `(i * shades + c) * width`.
@@ -129,7 +137,7 @@ struct Scratch {
 impl Native {
     /// Nothing is built before the first drawing.
     pub fn new(knobs: Knobs) -> Self {
-        Self { knobs, tables: Vec::new(), background: None }
+        Self { knobs, tables: Vec::new(), background: None, domes: Vec::new() }
     }
 
     /// Makes `self.tables` hold what `plan` needs and no other; returns the index of each look-up's tables.
@@ -179,6 +187,7 @@ impl Native {
             stats.steps_ms.push((name.into(), clock.elapsed().as_secs_f64() * 1e3));
             clock = Instant::now();
         };
+        let theatre = &*shadow_map::seen(theatre, &self.knobs);
         let plan = Plan::new(theatre, view, &self.knobs)?;
         stats.counts.insert("planes".into(), plan.planes.len() as u64);
         stats.counts.insert("planes_off_beam".into(), (theatre.planes.len() - plan.planes.len()) as u64);
@@ -199,6 +208,11 @@ impl Native {
             background.encode(white);
         }
         step(&mut stats, "background");
+        if let Ambient::Dome { .. } = theatre.ambient {
+            let built = dome::prepare(theatre, &mut self.domes);
+            stats.counts.insert("domes_built".into(), built);
+            step(&mut stats, "dome");
+        }
         let coloured = matches!(theatre.ambient, Ambient::Paper { s: [r, g, b], .. } if r != g || g != b);
         let job = Job {
             theatre,
@@ -209,6 +223,10 @@ impl Native {
             background: &background,
             shades: if coloured { 3 } else { plan.channels.max(background.share_channels()) },
             layers: matches!(sink, Sink::Radiance { .. }),
+            dome: match theatre.ambient {
+                Ambient::Dome { radiance } => Some(DomeLight::new(theatre, radiance, &self.domes)),
+                _ => None,
+            },
         };
         let counts = job.run(sink);
         for (name, count) in [
@@ -301,6 +319,13 @@ impl Job<'_> {
     /// State of look-up `l` in channel `c` over sub-pixel columns × rows, from the sum over every texel they touch.
     fn classify(&self, l: usize, c: usize, columns: Range<usize>, rows: Range<usize>) -> State {
         let (lookup, table) = (&self.plan.lookups[l], self.tables[l * self.plan.channels + c]);
+        if let Some(frame) = &lookup.tilted {
+            let size = self.view.size.map(|side| side * self.plan.sub);
+            let edge =
+                |i: usize, j: usize| pixel_m(&self.theatre.screen, size, i as f64 - 0.5, j as f64 - 0.5);
+            let tile = [edge(columns.start, rows.start), edge(columns.end, rows.end)];
+            return tilted_state(table, frame.range(tile, &self.plan.pieces[lookup.piece]));
+        }
         let x = lookup.x.touched(columns.clone(), table.width);
         let y = lookup.y.touched(rows.clone(), table.height);
         let area = ((x[1] - x[0]) * (y[1] - y[0])) as u64;
@@ -362,7 +387,7 @@ impl Job<'_> {
         let kind = |t: usize| {
             let of = &states[t * entries..(t + 1) * entries];
             match () {
-                () if !skip => Kind::Shade,
+                () if !skip || self.dome.is_some() => Kind::Shade,
                 () if of.iter().all(|s| *s == State::Lit) => Kind::Lit,
                 () if of.iter().all(|s| *s == State::Dark) && self.theatre.ambient == Ambient::None => {
                     Kind::Black
@@ -418,6 +443,22 @@ impl Job<'_> {
         let (sub, entries) = (self.plan.sub, self.tables.len());
         let (lookup, table): (&Lookup, &Table) = (&self.plan.lookups[e / self.plan.channels], self.tables[e]);
         let mut boxes = 0;
+        if let Some(frame) = &lookup.tilted {
+            let piece = &self.plan.pieces[lookup.piece];
+            let size = self.view.size.map(|side| side * sub);
+            for (out, x) in out.iter_mut().zip(span.start * sub..) {
+                match states[(x / sub / TILE[0]) * entries + e] {
+                    State::Lit => *out = 1.0,
+                    State::Dark => *out = 0.0,
+                    State::Penumbra => {
+                        let p = pixel_m(&self.theatre.screen, size, x as f64, row as f64);
+                        *out = 1.0 - frame.opacity(table, piece, p) as f32;
+                        boxes += 1;
+                    }
+                }
+            }
+            return boxes;
+        }
         let mut x = span.start;
         while x < span.end {
             let from = x;
@@ -517,9 +558,16 @@ impl Job<'_> {
         let mut boxes = 0;
         let mut weights = vec![0f32; n];
         out.fill(0.0);
-        for p in (0..plan.pieces.len()).filter(|p| plan.pieces[*p].emitter == e) {
+        let pieces = || (0..plan.pieces.len()).filter(|p| plan.pieces[*p].emitter == e);
+        for p in pieces() {
             self.piece_weights(p, j, span, &mut scratch.piece);
             weights.iter_mut().zip(&scratch.piece).for_each(|(s, w)| *s += w);
+        }
+        for p in pieces() {
+            self.piece_weights(p, j, span, &mut scratch.piece);
+            let mut mean = std::mem::take(&mut scratch.mean);
+            mean.clear();
+            mean.resize(n, 0.0);
             for row in j * sub..(j + 1) * sub {
                 scratch.product.clear();
                 scratch.product.resize(n * sub, 1.0);
@@ -530,13 +578,20 @@ impl Job<'_> {
                         self.transmittance(entry, row, span, states, &mut scratch.combined, &mut scratch.one);
                     multiply(&mut scratch.product, &scratch.one);
                     if own {
-                        self.add_own(lookup.plane, e, c, j, span, scratch);
+                        self.add_own((lookup.plane, e, c), j, span, &weights, scratch);
                     }
                 }
-                add_means(&scratch.product, sub, &scratch.piece, out);
+                for (m, v) in mean.iter_mut().zip(scratch.product.chunks_exact(sub)) {
+                    *m += v.iter().sum::<f32>();
+                }
             }
+            // All sums are of whole numbers where everything is lit, so that all lit stays exactly 1.
+            for ((v, m), w) in out.iter_mut().zip(&mean).zip(&scratch.piece) {
+                *v += w * (m / (sub * sub) as f32);
+            }
+            scratch.mean = mean;
         }
-        out.iter_mut().zip(&weights).for_each(|(v, w)| *v = (*v / (w * sub as f32)).min(1.0));
+        out.iter_mut().zip(&weights).for_each(|(v, w)| *v = (*v / w).min(1.0));
         boxes
     }
 
@@ -545,14 +600,13 @@ impl Job<'_> {
         let piece = &self.plan.pieces[p];
         out.clear();
         match self.weights {
-            Weights::Area => out.resize(span.len(), 1.0),
+            Weights::Area => out.resize(span.len(), piece.weight as f32),
             Weights::Irradiance => {
                 let shape = kelir_scene::EmitterShape::Rectangle { size_m: piece.size_m };
-                // Relative to the piece's area over its squared distance, so that f32 keeps any scale.
-                let scale = piece.centre_m.z * piece.centre_m.z / shape.area_m2();
+                // Relative to its share of the area over the squared distance, so that f32 keeps any scale.
+                let scale = piece.weight * piece.centre_m.z * piece.centre_m.z / shape.area_m2();
                 out.extend(span.clone().map(|i| {
-                    let at =
-                        crate::project::pixel_m(&self.theatre.screen, self.view.size, i as f64, j as f64);
+                    let at = pixel_m(&self.theatre.screen, self.view.size, i as f64, j as f64);
                     (crate::irradiance::unit(&shape, piece.centre_m, at) * scale) as f32
                 }));
             }
@@ -562,11 +616,10 @@ impl Job<'_> {
     /// Adds share · mean opacity of one look-up to its plane's own shadow.
     fn add_own(
         &self,
-        plane: usize,
-        emitter: usize,
-        c: usize,
+        (plane, emitter, c): (usize, usize, usize),
         j: usize,
         span: &Range<usize>,
+        weights: &[f32],
         scratch: &mut Scratch,
     ) {
         let (n, sub, w) = (span.len(), self.plan.sub, self.view.size[0]);
@@ -587,7 +640,7 @@ impl Job<'_> {
                     1.0 - others.map(|e| self.background.share(e, shade)[at]).sum::<f32>()
                 };
                 let mean: f32 = scratch.one[k * sub..(k + 1) * sub].iter().map(|v| 1.0 - v).sum();
-                *own += share * mean * scratch.piece[k];
+                *own += share * mean * (scratch.piece[k] / weights[k]) / (sub * sub) as f32;
             }
         }
     }
@@ -604,7 +657,7 @@ impl Job<'_> {
             }
             _ => return false,
         };
-        if self.shades > 1 || self.background.lit.len() > 1 || emitters > 2 {
+        if self.shades > 1 || self.background.lit.len() > 1 || emitters > 2 || self.dome.is_some() {
             return false;
         }
         let pixels = j * self.view.size[0] + span.start..j * self.view.size[0] + span.end;
@@ -668,10 +721,24 @@ impl Job<'_> {
         let to = at + span.start..at + span.end;
         let shade = |c: usize| &scratch.shade[c.min(self.shades - 1) * n..][..n];
         let lit = |c: usize| &self.background.lit(c)[pixels.clone()];
+        let mut added = [0, 1, 2].map(|_| Vec::new());
+        if let Some(dome) = &self.dome {
+            let albedo = |c: usize, k: usize| self.background.albedo.as_ref().map_or(0.0, |a| a.at(c, k));
+            added = [0, 1, 2].map(|c| {
+                let at = |i: usize| pixel_m(&self.theatre.screen, self.view.size, i as f64, j as f64);
+                span.clone().map(|i| albedo(c, row + i) * dome.radiance(c, at(i))).collect()
+            });
+        }
         match band {
             Band::Display { white, out } => {
                 let (srgb, scale) = (Srgb::get(), (1.0 / *white) as f32);
-                if self.shades == 1 && self.background.lit.len() == 1 {
+                if self.dome.is_some() {
+                    let (lit, shade) = ([0, 1, 2].map(lit), [0, 1, 2].map(shade));
+                    for (k, out) in out[to].iter_mut().enumerate() {
+                        let code = |c: usize| srgb.code((lit[c][k] * shade[c][k] + added[c][k]) * scale);
+                        *out = pack(code(0), code(1), code(2));
+                    }
+                } else if self.shades == 1 && self.background.lit.len() == 1 {
                     encode_grey(srgb, lit(0), shade(0), scale, &mut out[to]);
                 } else {
                     let lit = [lit(0), lit(1), lit(2)];
@@ -682,6 +749,7 @@ impl Job<'_> {
                 for (c, plane) in radiance.iter_mut().enumerate() {
                     let to = &mut plane[to.clone()];
                     to.iter_mut().zip(lit(c)).zip(shade(c)).for_each(|((l, lit), x)| *l = lit * x);
+                    to.iter_mut().zip(&added[c]).for_each(|(l, dome)| *l += dome);
                 }
                 // All puppets may be off the beam: then one channel answers for the three layers.
                 let layers_per = layers.len() / self.theatre.lamp.emitters.len();
@@ -695,16 +763,23 @@ impl Job<'_> {
     }
 }
 
-/// Adds to each pixel's sum its weight times the mean of its `sub` sub-pixels.
-fn add_means(fine: &[f32], sub: usize, weights: &[f32], sum: &mut [f32]) {
-    if sub == 1 {
-        for ((s, v), w) in sum.iter_mut().zip(fine).zip(weights) {
-            *s += w * v;
-        }
-    } else {
-        for ((s, v), w) in sum.iter_mut().zip(fine.chunks_exact(sub)).zip(weights) {
-            *s += w * (v.iter().sum::<f32>() / sub as f32);
-        }
+/// State of everything between texel coordinates `low` and `high`. The box that stands for a quadrilateral may stick out of its hull
+/// by its own size at most.
+fn tilted_state(table: &Table, [low, high]: [DVec2; 2]) -> State {
+    let grid = DVec2::new(table.width as f64, table.height as f64);
+    let slack = (high - low).abs();
+    let (low, high) = ((low - slack).floor(), (high + slack).ceil());
+    let inside = low.cmpge(DVec2::ZERO).all() && high.cmple(grid).all();
+    let (low, high) = (low.clamp(DVec2::ZERO, grid), high.clamp(DVec2::ZERO, grid));
+    if low.cmpge(high).any() {
+        return State::Lit;
+    }
+    let (x, y) = ([low.x as usize, high.x as usize], [low.y as usize, high.y as usize]);
+    let full = ((x[1] - x[0]) * (y[1] - y[0])) as u64 * u64::from(table.max_code);
+    match table.sum(x, y) {
+        0 => State::Lit,
+        s if s == full && inside => State::Dark,
+        _ => State::Penumbra,
     }
 }
 

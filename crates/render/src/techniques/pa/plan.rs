@@ -2,9 +2,10 @@
 //! tables and their fixed-point scales.
 
 use glam::{DVec2, DVec3};
-use kelir_scene::{Ambient, EmitterShape, Theatre};
+use kelir_scene::{Ambient, EmitterShape, Plane, Theatre};
 
-use super::{Knobs, Weights, window::Windows};
+use super::tilted::Frame;
+use super::{Knobs, Variant, Weights, window::Windows};
 use crate::project::{ShadowBox, pixel_m};
 use crate::{Pixel, RenderError, View};
 
@@ -17,6 +18,8 @@ pub struct Piece {
     pub centre_m: DVec3,
     /// Its full sides, metres.
     pub size_m: [f64; 2],
+    /// Its share of its emitter's area.
+    pub weight: f64,
 }
 
 /// One plane seen from one piece.
@@ -38,6 +41,8 @@ pub struct Lookup {
     pub norm: f64,
     /// A later look-up of the same plane whose boxes contain this one's: what is lit or dark there is so here.
     pub within: Option<usize>,
+    /// For a tilted plane, in place of windows.
+    pub tilted: Option<Frame>,
 }
 
 /// Everything but the pixels.
@@ -80,44 +85,51 @@ pub fn check_view(theatre: &Theatre, view: &View) -> Result<(), RenderError> {
     Ok(())
 }
 
+/// Errors: what the shaders can't draw; the native backend can.
+pub fn refuse_on_gpu(theatre: &Theatre) -> Result<(), RenderError> {
+    let elsewhere = "on the GPU it is not drawn; use --backend cpu";
+    if let Some(i) = theatre.planes.iter().position(is_tilted) {
+        return Err(refuse(format!("puppets[{i}].tilt_deg = {:?}: {elsewhere}", theatre.planes[i].tilt_deg)));
+    }
+    let disk = |e: &kelir_scene::Emitter| matches!(e.shape, EmitterShape::Disk { .. });
+    if let Some(k) = theatre.lamp.emitters.iter().position(disk) {
+        return Err(refuse(format!("lamp.emitters[{k}].shape = \"disk\": {elsewhere}")));
+    }
+    match theatre.ambient {
+        Ambient::Dome { .. } => Err(refuse(format!("ambient.model = \"dome\": {elsewhere}"))),
+        _ => Ok(()),
+    }
+}
+
 impl Plan {
     /// Errors: what this code can't draw truthfully.
     pub fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
         check_view(theatre, view)?;
         let lamp = theatre.lamp.position_m;
-        if let Ambient::Dome { .. } = theatre.ambient {
-            return Err(refuse(
-                "ambient.model = \"dome\" is not supported yet; use \"none\" or \"paper\"".into(),
-            ));
-        }
-        for (i, plane) in theatre.planes.iter().enumerate() {
-            if plane.tilt_deg != [0.0; 2] {
-                return Err(refuse(format!(
-                    "puppets[{i}].tilt_deg = {:?}: not supported yet",
-                    plane.tilt_deg
-                )));
-            }
-        }
-        let mut pieces = Vec::new();
-        // One plane splits exactly into pieces of equal area, so splitting would change nothing.
-        let split =
-            if theatre.planes.len() < 2 && knobs.weights == Weights::Area { 1 } else { knobs.split as usize };
-        for (k, emitter) in theatre.lamp.emitters.iter().enumerate() {
-            let EmitterShape::Rectangle { size_m: [w, h] } = emitter.shape else {
-                return Err(refuse(format!("lamp.emitters[{k}].shape = \"disk\": not supported yet")));
-            };
-            let part = |i: usize, side: f64| ((i as f64 + 0.5) / split as f64 - 0.5) * side;
-            for j in 0..split {
-                for i in 0..split {
-                    pieces.push(Piece {
-                        emitter: k,
-                        centre_m: lamp + DVec3::new(part(i, w), part(j, h), 0.0),
-                        size_m: [w / split as f64, h / split as f64],
-                    });
+        if let Some(i) = theatre.planes.iter().position(is_tilted) {
+            let tilt = theatre.planes[i].tilt_deg;
+            let refused = match theatre.ambient {
+                Ambient::Dome { .. } => Some("ambient.model = \"dome\" is drawn with upright puppets only"),
+                _ if knobs.variant == Variant::ShadowMap => {
+                    Some("a shadow map is drawn of upright puppets only")
                 }
+                _ => None,
+            };
+            if let Some(rule) = refused {
+                return Err(refuse(format!("puppets[{i}].tilt_deg = {tilt:?}: {rule}")));
             }
         }
-        let sub = subpixels(theatre, view, &pieces);
+        // One upright plane splits exactly into pieces of equal area, so splitting would change nothing.
+        let exact = theatre.planes.len() < 2 && !theatre.planes.iter().any(is_tilted);
+        let split = if exact && knobs.weights == Weights::Area { 1 } else { knobs.split as usize };
+        let pieces: Vec<Piece> = theatre
+            .lamp
+            .emitters
+            .iter()
+            .enumerate()
+            .flat_map(|(k, emitter)| cut(k, &emitter.shape, lamp, split, knobs.strips as usize))
+            .collect();
+        let sub = subpixels(theatre, view);
         let size = [view.size[0] * sub, view.size[1] * sub];
         let mut plan = Self {
             sub,
@@ -134,12 +146,46 @@ impl Plan {
         Ok(plan)
     }
 
+    fn add_tilted(&mut self, theatre: &Theatre, p: usize) {
+        let plane = &theatre.planes[p];
+        let frame = Frame::new(plane);
+        let corner = 0.5 * DVec2::new(theatre.screen.width_m, theatre.screen.height_m);
+        let grid = DVec2::new(plane.mask.width as f64, plane.mask.height as f64);
+        let off = self.pieces.iter().all(|piece| {
+            let [low, high] = frame.range([-corner, corner], piece);
+            low.cmpge(grid).any() || high.cmple(DVec2::ZERO).any()
+        });
+        if off {
+            return;
+        }
+        self.wide[p] = plane.mask.width as f64 * plane.mask.height as f64 * f64::from(plane.mask.max_code())
+            >= 2f64.powi(32);
+        for piece in 0..self.pieces.len() {
+            self.lookups.push(Lookup {
+                plane: p,
+                piece,
+                x: Windows::default(),
+                y: Windows::default(),
+                shift: 0,
+                unit: 1.0,
+                norm: 0.0,
+                within: None,
+                tilted: Some(frame.clone()),
+            });
+        }
+        self.planes.push(p);
+        self.channels = self.channels.max(plane.mask.channels);
+    }
+
     fn add_plane(&mut self, theatre: &Theatre, view: &View, p: usize, size: [usize; 2]) {
         let plane = &theatre.planes[p];
         let grid = [plane.mask.width, plane.mask.height];
         let first = self.lookups.len();
         let max_code = f64::from(plane.mask.max_code());
         let mut largest = 0f64;
+        if is_tilted(plane) {
+            return self.add_tilted(theatre, p);
+        }
         for (i, piece) in self.pieces.iter().enumerate() {
             let map = ShadowBox::new(plane, piece.centre_m);
             let at = |i: usize, j: usize| map.centre(pixel_m(&theatre.screen, size, i as f64, j as f64));
@@ -162,6 +208,7 @@ impl Plan {
                 unit: sides.y.min(1.0),
                 norm: 0.0,
                 within: None,
+                tilted: None,
             });
         }
         let off = self.lookups[first..].iter().all(|l| {
@@ -193,17 +240,65 @@ impl Plan {
     }
 }
 
-/// Sub-pixels an axis: 1 unless several planes meet in `area` pixels that are wider than a quarter of the narrowest box.
-fn subpixels(theatre: &Theatre, view: &View, pieces: &[Piece]) -> usize {
-    if theatre.planes.len() < 2 || view.pixel == Pixel::Centre {
+/// Whether a plane is not parallel to the screen.
+pub fn is_tilted(plane: &Plane) -> bool {
+    plane.tilt_deg != [0.0; 2]
+}
+
+/// An emitter's pieces: a rectangle's `split` × `split`, or a disk's `strips` of equal height, each as wide as its own area asks and cut
+/// into `split` side by side.
+fn cut(emitter: usize, shape: &EmitterShape, lamp_m: DVec3, split: usize, strips: usize) -> Vec<Piece> {
+    let part = |i: usize, n: usize| (i as f64 + 0.5) / n as f64 - 0.5;
+    let grid = |rows: usize| (0..rows).flat_map(move |j| (0..split).map(move |i| (i, j)));
+    match *shape {
+        EmitterShape::Rectangle { size_m: [w, h] } => {
+            let n = split as f64;
+            let piece = |(i, j)| Piece {
+                emitter,
+                centre_m: lamp_m + DVec3::new(part(i, split) * w, part(j, split) * h, 0.0),
+                size_m: [w / n, h / n],
+                weight: 1.0,
+            };
+            grid(split).map(piece).collect()
+        }
+        EmitterShape::Disk { radius_m } => {
+            let height = 2.0 / strips as f64;
+            // Area of the unit disk below y.
+            let below = |y: f64| {
+                let y = y.clamp(-1.0, 1.0);
+                y * (1.0 - y * y).sqrt() + y.asin()
+            };
+            let piece = |(i, j): (usize, usize)| {
+                let bottom = -1.0 + j as f64 * height;
+                let area = below(bottom + height) - below(bottom);
+                let width = area / height;
+                Piece {
+                    emitter,
+                    centre_m: lamp_m
+                        + radius_m * DVec3::new(part(i, split) * width, bottom + 0.5 * height, 0.0),
+                    size_m: [radius_m * width / split as f64, radius_m * height],
+                    weight: area,
+                }
+            };
+            grid(strips).map(piece).collect()
+        }
+    }
+}
+
+/// Sub-pixels an axis: 1 unless several planes, or a tilted one, meet `area` pixels that are wider than a quarter of the
+/// narrowest box.
+fn subpixels(theatre: &Theatre, view: &View) -> usize {
+    let alone = theatre.planes.len() < 2 && !theatre.planes.iter().any(is_tilted);
+    if alone || view.pixel == Pixel::Centre {
         return 1;
     }
     let pixel_m = theatre.screen.width_m / view.size[0] as f64;
     let narrowest = theatre.planes.iter().flat_map(|plane| {
         let ratio = plane.centre_m.z / theatre.lamp.position_m.z;
-        pieces
-            .iter()
-            .map(move |piece| piece.size_m[0].min(piece.size_m[1]) * ratio / ((1.0 - ratio) * pixel_m))
+        theatre.lamp.emitters.iter().map(move |emitter| {
+            let [a, b] = emitter.shape.half_extent_m();
+            2.0 * a.min(b) * ratio / ((1.0 - ratio) * pixel_m)
+        })
     });
     let narrowest = narrowest.fold(f64::INFINITY, f64::min);
     ((4.0 / narrowest).ceil() as usize).clamp(1, 4)

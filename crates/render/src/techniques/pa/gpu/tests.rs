@@ -106,7 +106,7 @@ fn gpu_agrees_with_native() {
     for (knobs, pixel) in [
         (Knobs::default(), Pixel::Centre),
         (Knobs::default(), Pixel::Area),
-        (Knobs { split: 2, weights: Weights::Irradiance }, Pixel::Area),
+        (Knobs { split: 2, weights: Weights::Irradiance, ..Knobs::default() }, Pixel::Area),
     ] {
         let (mut right, mut wrong) = (on_gpu(&Shaders::default(), knobs), on_gpu(&wrong(), knobs));
         for (k, scene) in scenes().iter().enumerate() {
