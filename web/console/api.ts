@@ -142,6 +142,27 @@ export interface Report {
   chain: { rows: number; head: string; broken: [number, string] | null };
 }
 
+/** One comparison of the paper, computed again. */
+export interface Comparison {
+  id: string;
+  title: string;
+  printed: { mean: number; sd: number; t: number };
+  /** (choices of PA, participants). */
+  counts: Array<[number, number]>;
+  test: { n: number; mean: number; sd: number; mu: number; t: number; df: number; p: number };
+  t_as_printed: boolean;
+  p_holm: number;
+  effect: { g: number; g_interval: Interval };
+  equivalence_points: { p: number };
+  equivalence_sd: { p: number };
+  bayes: { bf01: number };
+}
+
+export interface Paper {
+  comparisons: Comparison[];
+  printed_t: { printed: number; participants: [number, number]; splits_with_this_t: unknown[] };
+}
+
 const admin = "/api/v1/admin/studies";
 
 export const login = (password: string) => request<void>("/api/v1/login", { method: "POST", body: { password } });
@@ -149,6 +170,8 @@ export const logout = () => request<void>("/api/v1/logout", { method: "POST" });
 export const fetchResults = (study: string) => request<Results>(`${admin}/${encodeURIComponent(study)}/results`);
 
 export const fetchReport = (study: string) => request<Report>(`${admin}/${encodeURIComponent(study)}/report`, { timeoutMs: 120_000 });
+
+export const fetchPaper = () => request<Paper>("/api/v1/admin/papers/taylor-cameron");
 
 /** The list, however it is wrapped. */
 export async function fetchStudies(): Promise<StudyRow[]> {

@@ -2,9 +2,10 @@
 import { h } from "../shared/dom.ts";
 import { clockTime, count, fixed, pValue } from "../shared/format.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
-import { type Block, csvAddress, fetchReport, fetchResults, fetchStudies, type Participants, type Results, type StudyRow } from "./api.ts";
+import { type Block, csvAddress, fetchPaper, fetchReport, fetchResults, fetchStudies, type Participants, type Results, type StudyRow } from "./api.ts";
 import { copyButton, number, tableText } from "./copy.ts";
 import { gallery } from "./gallery.ts";
+import { drawPaper, PAPER_STUDY } from "./paper.ts";
 import { choiceDistribution } from "./plots.ts";
 import { drawReport } from "./report.ts";
 
@@ -63,6 +64,16 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
   draw(await look());
   if (signal.aborted) return;
   root.replaceChildren(updated, body);
+  if (id === PAPER_STUDY) {
+    const paper = h("section", { class: "paper" });
+    fetchPaper().then(
+      (found) => {
+        paper.replaceChildren(...drawPaper(found));
+        body.lastElementChild?.before(paper);
+      },
+      () => undefined, // a server without this route
+    );
+  }
 
   const refresh = async () => {
     if (document.hidden || signal.aborted) return;

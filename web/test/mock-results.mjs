@@ -79,6 +79,15 @@ export function results(path, sessions, stuff) {
     { id: "empty", title: "A study that nobody has taken", status: "preparing", detail: { done: 3, total: 10, stimulus: "still-arjuna (mc)" }, participants: { started: 0, in_progress: 0, completed: 0 } },
   ];
   if (path === "/api/v1/admin/studies") return [200, { studies }];
+  if (path === "/api/v1/admin/papers/taylor-cameron") {
+    const titles = ["PA against MC, two pairs of still images", "PA against photographs, two pairs of still images", "PA against MC, one pair of animations"];
+    const comparisons = judged.map((b, i) => ({
+      ...{ id: ["still-mc", "still-photo", "animation-mc"][i], title: titles[i], printed: { mean: b.mean, sd: b.sd, t: [-1.438, 4.209, -3.293][i] } },
+      ...{ counts: Object.entries(b.counts).map(([k, n]) => [Number(k), n]), test: b, t_as_printed: i < 2, p_holm: b.p_holm, effect: b.analysis.effect },
+      ...{ equivalence_points: b.analysis.equivalence[0], equivalence_sd: b.analysis.equivalence[1], bayes: b.analysis.bayes },
+    }));
+    return [200, { comparisons, printed_t: { printed: -3.293, participants: [25, 40], splits_with_this_t: [] } }];
+  }
   const [, id, rest] = path.match(/^\/api\/v1\/admin\/studies\/([^/]+)\/(.+)$/) ?? [];
   const study = studies.find((s) => s.id === id);
   if (study === undefined) return null;
