@@ -30,8 +30,12 @@ pub const KEYS: usize = 10_000;
 pub const FRAMES: usize = 100_000;
 /// Frames a second.
 pub const FPS: f64 = 1000.0;
-/// Elements of an SVG, counted as often as they are drawn (`use`, patterns, masks).
+/// Elements of an SVG, counted as often as they are drawn (`use`, masks), long paths for more than one.
 pub const SVG_ELEMENTS: u64 = 100_000;
+/// Bytes of an SVG times its parts: each part is read by itself.
+pub const SVG_SPLIT_BYTES: usize = 1 << 28;
+/// Bytes of an SVG's style sheets times its elements.
+pub const SVG_STYLING: usize = 1 << 28;
 /// Elements within elements, followed through references.
 pub const SVG_DEPTH: usize = 64;
 /// Coordinates in metres.

@@ -9,26 +9,29 @@ use crate::theatre::Texels;
 const BAND: usize = 16;
 
 /// A part where a pose puts it.
+#[derive(Clone, Copy)]
 pub(crate) struct Placed<'a> {
     pub texture: &'a Texture,
     pub motion: Rigid,
 }
 
-/// The product of the parts that never move: transmittances and their codes.
-#[derive(Debug)]
-pub(crate) struct Plate {
+/// The product of the parts that never move.
+pub(crate) struct Plate<'a, C, const L: usize> {
     pub rect: Rect,
-    /// One plane a channel.
-    pub transmittance: Vec<f32>,
-    pub codes: Texels,
+    /// Transmittances, texel by texel.
+    pub light: &'a [[f32; L]],
+    /// The same, quantised: one plane a channel.
+    pub codes: &'a [C],
 }
 
 /// A texel's code: u8 or u16.
-pub(crate) trait Code: Copy + Send + Sync {
+pub(crate) trait Code: Copy + Send + Sync + Sized {
     /// The code that lets everything through.
     const CLEAR: Self;
     /// Nearest code of a transmittance in [0, 1].
     fn nearest(transmittance: f32) -> Self;
+    /// Texels of this code; none of another.
+    fn slice(texels: &Texels) -> &[Self];
 }
 
 // Adding 2²³ leaves the nearest whole number in the low bits: it rounds as the hardware does, and vectorises.
@@ -39,6 +42,9 @@ impl Code for u8 {
     fn nearest(transmittance: f32) -> u8 {
         (transmittance * 255.0 + ROUND).to_bits() as u8
     }
+    fn slice(texels: &Texels) -> &[u8] {
+        if let Texels::U8(codes) = texels { codes } else { &[] }
+    }
 }
 
 impl Code for u16 {
@@ -46,98 +52,108 @@ impl Code for u16 {
     fn nearest(transmittance: f32) -> u16 {
         (transmittance * 65535.0 + ROUND).to_bits() as u16
     }
+    fn slice(texels: &Texels) -> &[u16] {
+        if let Texels::U16(codes) = texels { codes } else { &[] }
+    }
+}
+
+/// Channels of a mask whose texels have L lanes: 1 for grey, 3 for colour, whose fourth lane is not used.
+const fn channels(lanes: usize) -> usize {
+    if lanes == 1 { 1 } else { 3 }
 }
 
 /// Draws the product of `plate` and `parts` on the texels of `extent`, one plane a channel, into `codes`
 /// (resized; its old content does not matter).
-pub(crate) fn compose<C: Code>(
+pub(crate) fn compose<C: Code, const L: usize>(
     extent: Rect,
-    channels: usize,
-    plate: Option<(Rect, &[f32], &[C])>,
+    plate: Option<Plate<C, L>>,
     parts: &[Placed],
     codes: &mut Vec<C>,
 ) {
-    let (width, height) = (extent.width(), extent.height());
-    codes.resize(width * height * channels, C::CLEAR);
-    let samplers: Vec<_> = parts.iter().map(Sampler::new).collect();
-    for (c, plane) in codes.chunks_exact_mut((width * height).max(1)).enumerate() {
-        plane.par_chunks_mut(width * BAND).enumerate().for_each_init(
-            || vec![1.0f32; width],
-            |light, (band, rows)| {
-                for (j, row) in rows.chunks_exact_mut(width).enumerate() {
-                    let y = extent.y0 + (band * BAND + j) as i64;
-                    compose_row(extent, y, c, plate, &samplers, light, row);
-                }
-            },
-        );
-    }
-}
-
-/// Multiplies a part into the transmittances of `extent`, one plane a channel.
-pub(crate) fn multiply(extent: Rect, part: &Placed, light: &mut [f32]) {
-    let (width, sampler) = (extent.width(), Sampler::new(part));
-    for (c, plane) in light.chunks_exact_mut(extent.area().max(1)).enumerate() {
-        plane.par_chunks_exact_mut(width).enumerate().for_each(|(j, row)| {
-            let y = extent.y0 + j as i64;
-            if let Some(span) = sampler.span(y, extent) {
-                sampler.multiply(y, extent, c, span.clone(), &mut row[span]);
-            }
-        });
-    }
-}
-
-/// One row of one channel; `light` is scratch of the row's length.
-fn compose_row<C: Code>(
-    extent: Rect,
-    y: i64,
-    channel: usize,
-    plate: Option<(Rect, &[f32], &[C])>,
-    samplers: &[Sampler],
-    light: &mut [f32],
-    row: &mut [C],
-) {
-    // What no moving part touches is a copy of the plate's codes, or clear.
-    let under = plate.and_then(|(rect, transmittance, codes)| {
-        let inside = (rect.y0..rect.y1).contains(&y);
-        let start = (channel * rect.height() + usize::try_from(y - rect.y0).ok()?) * rect.width();
-        inside.then(|| {
-            let at = usize::try_from(rect.x0 - extent.x0).expect("the extent holds the plate");
-            (at, &transmittance[start..][..rect.width()], &codes[start..][..rect.width()])
-        })
-    });
-    row.fill(C::CLEAR);
-    if let Some((at, _, codes)) = under {
-        row[at..at + codes.len()].copy_from_slice(codes);
-    }
-    // The texels that some moving part touches.
-    let mut first = usize::MAX;
-    let mut end = 0;
-    let spans = samplers.iter().filter_map(|s| s.span(y, extent).map(|span| (s, span)));
-    for (_, span) in spans.clone() {
-        first = first.min(span.start);
-        end = end.max(span.end);
-    }
-    if first >= end {
-        return;
-    }
-    light[first..end].fill(1.0);
-    if let Some((at, transmittance, _)) = under {
-        let (from, to) = (first.max(at), end.min(at + transmittance.len()));
-        if from < to {
-            light[from..to].copy_from_slice(&transmittance[from - at..to - at]);
+    let width = extent.width();
+    codes.resize(extent.area() * channels(L), C::CLEAR);
+    let samplers: Vec<Sampler<L>> = parts.iter().map(Sampler::new).collect();
+    // A band holds the same rows of every channel's plane.
+    let mut bands: Vec<Vec<&mut [C]>> = Vec::new();
+    bands.resize_with(extent.height().div_ceil(BAND), Vec::new);
+    for plane in codes.chunks_exact_mut(extent.area().max(1)) {
+        for (band, rows) in bands.iter_mut().zip(plane.chunks_mut(width * BAND)) {
+            band.push(rows);
         }
     }
-    for (sampler, span) in spans {
-        sampler.multiply(y, extent, channel, span.clone(), &mut light[span]);
+    bands.into_par_iter().enumerate().for_each_init(
+        || vec![[1.0; L]; width],
+        |light, (band, mut planes)| {
+            for j in 0..planes[0].len() / width {
+                let y = extent.y0 + (band * BAND + j) as i64;
+                let row = planes.iter_mut().map(|rows| &mut rows[j * width..][..width]);
+                compose_row(extent, y, plate.as_ref(), &samplers, light, row);
+            }
+        },
+    );
+}
+
+/// Multiplies a part into the transmittances of `extent`.
+pub(crate) fn multiply<const L: usize>(extent: Rect, part: &Placed, light: &mut [[f32; L]]) {
+    let sampler = Sampler::new(part);
+    light.par_chunks_exact_mut(extent.width().max(1)).enumerate().for_each(|(j, row)| {
+        let y = extent.y0 + j as i64;
+        if let Some(span) = sampler.span(y, extent) {
+            sampler.multiply(y, extent, span.clone(), &mut row[span]);
+        }
+    });
+}
+
+/// One row of every channel; `light` is scratch of the row's length.
+fn compose_row<'r, C: Code + 'r, const L: usize>(
+    extent: Rect,
+    y: i64,
+    plate: Option<&Plate<C, L>>,
+    samplers: &[Sampler<L>],
+    light: &mut [[f32; L]],
+    channels: impl Iterator<Item = &'r mut [C]>,
+) {
+    // The plate's row: where it begins in this one, and its texels' range in the plate.
+    let under = plate.filter(|p| (p.rect.y0..p.rect.y1).contains(&y)).map(|plate| {
+        let at = usize::try_from(plate.rect.x0 - extent.x0).expect("the extent holds the plate");
+        let start = (y - plate.rect.y0) as usize * plate.rect.width();
+        (plate, at, start..start + plate.rect.width())
+    });
+    // The columns that some moving part touches.
+    let spans = samplers.iter().filter_map(|s| s.span(y, extent).map(|span| (s, span)));
+    let touched = spans.clone().map(|(_, span)| span).reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
+    if let Some(touched) = touched.clone() {
+        light[touched.clone()].fill([1.0; L]);
+        if let Some((plate, at, texels)) = &under {
+            let (from, to) = (touched.start.max(*at), touched.end.min(at + texels.len()));
+            if from < to {
+                let texels = &plate.light[texels.clone()];
+                light[from..to].copy_from_slice(&texels[from - at..to - at]);
+            }
+        }
+        for (sampler, span) in spans {
+            sampler.multiply(y, extent, span.clone(), &mut light[span]);
+        }
     }
-    for (code, light) in row[first..end].iter_mut().zip(&light[first..end]) {
-        *code = C::nearest(*light);
+    for (c, row) in channels.enumerate() {
+        // What no moving part touches is a copy of the plate's codes, or clear.
+        row.fill(C::CLEAR);
+        if let Some((plate, at, texels)) = &under {
+            let plane = &plate.codes[c * plate.rect.area()..];
+            row[*at..at + texels.len()].copy_from_slice(&plane[texels.clone()]);
+        }
+        if let Some(touched) = touched.clone() {
+            for (code, light) in row[touched.clone()].iter_mut().zip(&light[touched]) {
+                *code = C::nearest(light[c]);
+            }
+        }
     }
 }
 
 /// Bilinear look-up of a moved part, in 32.32 fixed point: two additions a texel, and within 2e-6 texels after 16384 of them.
-struct Sampler<'a> {
+struct Sampler<'a, const L: usize> {
     texture: &'a Texture,
+    texels: &'a [[f32; L]],
     /// From lattice to part.
     inverse: Rigid,
     bounds: Rect,
@@ -145,10 +161,15 @@ struct Sampler<'a> {
 
 const ONE: f64 = 4_294_967_296.0;
 
-impl<'a> Sampler<'a> {
+impl<'a, const L: usize> Sampler<'a, L> {
     fn new(placed: &Placed<'a>) -> Self {
         let bounds = placed.motion.bounds(placed.texture.rect);
-        Self { texture: placed.texture, inverse: placed.motion.inverse(), bounds }
+        Self {
+            texture: placed.texture,
+            texels: placed.texture.texels(),
+            inverse: placed.motion.inverse(),
+            bounds,
+        }
     }
 
     /// Where the centre of texel (x, y) falls among the centres of the padded texture's texels, fixed point.
@@ -195,15 +216,7 @@ impl<'a> Sampler<'a> {
     }
 
     /// Multiplies the transmittances of columns `span` of `extent` with this part's.
-    fn multiply(
-        &self,
-        y: i64,
-        extent: Rect,
-        channel: usize,
-        span: std::ops::Range<usize>,
-        light: &mut [f32],
-    ) {
-        let plane = self.texture.plane(channel);
+    fn multiply(&self, y: i64, extent: Rect, span: std::ops::Range<usize>, light: &mut [[f32; L]]) {
         let stride = self.texture.stride();
         // The same fixed-point line as in `span`, or the ends could differ by an ulp.
         let offset = extent.x0 + span.start as i64 - self.bounds.x0;
@@ -214,10 +227,13 @@ impl<'a> Sampler<'a> {
         for light in light {
             let at = (v >> 32) as usize * stride + (u >> 32) as usize;
             let (fu, fv) = (fraction(u), fraction(v));
-            let quad = &plane[at..at + stride + 2];
-            let top = quad[0] + fu * (quad[1] - quad[0]);
-            let bottom = quad[stride] + fu * (quad[stride + 1] - quad[stride]);
-            *light *= 1.0 - (top + fv * (bottom - top));
+            let quad = &self.texels[at..at + stride + 2];
+            let (a, b, c, d) = (quad[0], quad[1], quad[stride], quad[stride + 1]);
+            for (lane, light) in light.iter_mut().enumerate() {
+                let top = a[lane] + fu * (b[lane] - a[lane]);
+                let bottom = c[lane] + fu * (d[lane] - c[lane]);
+                *light *= 1.0 - (top + fv * (bottom - top));
+            }
             u += step[0];
             v += step[1];
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::compose::{Code, Placed, Plate, compose};
+use super::compose::{Code, Placed, Plate, compose, multiply};
 use super::grid::{Lattice, Rect, Rigid, Texture};
 use super::manifest::Part;
 use crate::theatre::{Mask, Texels};
@@ -28,8 +28,36 @@ pub(crate) struct Figure {
     bits: u32,
     /// Set by [`Figure::settle`]: which parts may move, and the product of those that don't.
     moving: Vec<bool>,
-    plate: Option<Arc<Plate>>,
+    plate: Option<Still>,
     kept: Vec<(Pose, Rect, Arc<Mask>)>,
+}
+
+/// The product of the parts that never move, as [`Plate`] wants it.
+#[derive(Debug)]
+struct Still {
+    rect: Rect,
+    light: Vec<f32>,
+    codes: Texels,
+}
+
+impl Still {
+    fn new<const L: usize>(rect: Rect, parts: &[Placed], bits: u32) -> Self {
+        let mut light = vec![[1.0f32; L]; rect.area()];
+        for part in parts {
+            multiply(rect, part, &mut light);
+        }
+        let channels = if L == 1 { 1 } else { 3 };
+        let planes = (0..channels).flat_map(|c| light.iter().map(move |texel| texel[c]));
+        let codes = match bits {
+            16 => Texels::U16(planes.map(u16::nearest).collect()),
+            _ => Texels::U8(planes.map(u8::nearest).collect()),
+        };
+        Self { rect, light: light.into_flattened(), codes }
+    }
+
+    fn plate<C: Code, const L: usize>(&self) -> Plate<'_, C, L> {
+        Plate { rect: self.rect, light: self.light.as_chunks().0, codes: C::slice(&self.codes) }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -44,14 +72,18 @@ impl Figure {
         lattice: Lattice,
         origin: [f64; 2],
         parts: &[Part],
-        textures: Vec<Texture>,
+        mut textures: Vec<Texture>,
         bits: u32,
     ) -> Self {
         let joints = parts.iter().map(|part| Joint {
             parent: part.parent,
             pivot: part.pivot.map_or(lattice.centre(), |[x, y]| lattice.at([x - origin[0], y - origin[1]])),
         });
-        let channels = textures.iter().map(|t| t.channels).max().unwrap_or(1);
+        let grey = textures.iter().all(|t| t.lanes == 1);
+        let channels = if grey { 1 } else { 3 };
+        if !grey {
+            textures.iter_mut().for_each(Texture::widen);
+        }
         let moving = vec![true; textures.len()];
         Self {
             lattice,
@@ -115,26 +147,23 @@ impl Figure {
     /// Fixes which parts may move from now on and multiplies the others, as `pose` has them, once and for all.
     pub fn settle(&mut self, moving: Vec<bool>, pose: &Pose) {
         self.kept.clear();
-        self.moving = moving;
-        let still: Vec<usize> = (0..self.textures.len()).filter(|&p| !self.moving[p]).collect();
-        let rect = still
-            .iter()
-            .map(|&p| self.motion(p, pose).bounds(self.textures[p].rect))
-            .fold(Rect::EMPTY, Rect::union);
-        self.plate = None;
-        if rect.is_empty() {
+        if !moving.contains(&true) {
+            // One mask is all there will be: draw it from the parts, and keep nothing else.
+            self.mask(pose);
+            self.textures.iter_mut().for_each(|t| t.opacity = Vec::new());
             return;
         }
-        let mut light = vec![1.0f32; rect.area() * self.channels];
-        for &p in &still {
-            let motion = self.motion(p, pose);
-            super::compose::multiply(rect, &Placed { texture: &self.textures[p], motion }, &mut light);
-        }
-        let codes = match self.bits {
-            16 => Texels::U16(light.iter().map(|&l| u16::nearest(l)).collect()),
-            _ => Texels::U8(light.iter().map(|&l| u8::nearest(l)).collect()),
-        };
-        self.plate = Some(Arc::new(Plate { rect, transmittance: light, codes }));
+        self.moving = moving;
+        let still: Vec<usize> = (0..self.textures.len()).filter(|&p| !self.moving[p]).collect();
+        let placed: Vec<Placed> = still
+            .iter()
+            .map(|&p| Placed { texture: &self.textures[p], motion: self.motion(p, pose) })
+            .collect();
+        let rect = placed.iter().map(|p| p.motion.bounds(p.texture.rect)).fold(Rect::EMPTY, Rect::union);
+        self.plate = (!rect.is_empty()).then(|| match self.channels {
+            1 => Still::new::<1>(rect, &placed, self.bits),
+            _ => Still::new::<4>(rect, &placed, self.bits),
+        });
         for p in still {
             // Multiplied into the plate; the bounds are still needed for the extent.
             self.textures[p].opacity = Vec::new();
@@ -151,31 +180,28 @@ impl Figure {
         }
         let extent = self.extent(pose);
         let spent = self.make_room(extent.area() * self.channels * (self.bits as usize / 8));
-        let parts: Vec<Placed> = (0..self.textures.len())
-            .filter(|&p| self.moving[p])
-            .map(|p| Placed { texture: &self.textures[p], motion: self.motion(p, pose) })
-            .collect();
-        let plate = self.plate.as_deref();
-        let texels = if self.bits == 16 {
-            let mut codes = if let Some(Texels::U16(codes)) = spent { codes } else { Vec::new() };
-            let plate = plate.and_then(|p| match &p.codes {
-                Texels::U16(codes) => Some((p.rect, &p.transmittance[..], &codes[..])),
-                Texels::U8(_) => None,
-            });
-            compose(extent, self.channels, plate, &parts, &mut codes);
-            Texels::U16(codes)
-        } else {
-            let mut codes = if let Some(Texels::U8(codes)) = spent { codes } else { Vec::new() };
-            let plate = plate.and_then(|p| match &p.codes {
-                Texels::U8(codes) => Some((p.rect, &p.transmittance[..], &codes[..])),
-                Texels::U16(_) => None,
-            });
-            compose(extent, self.channels, plate, &parts, &mut codes);
-            Texels::U8(codes)
+        let texels = match (self.bits, spent) {
+            (16, Some(Texels::U16(codes))) => Texels::U16(self.draw(extent, pose, codes)),
+            (16, _) => Texels::U16(self.draw(extent, pose, Vec::new())),
+            (_, Some(Texels::U8(codes))) => Texels::U8(self.draw(extent, pose, codes)),
+            (..) => Texels::U8(self.draw(extent, pose, Vec::new())),
         };
         let mask = Arc::new(Mask::new(extent.width(), extent.height(), self.channels, texels));
         self.kept.push((pose.clone(), extent, mask.clone()));
         (extent, mask)
+    }
+
+    /// The codes of a pose on the texels of `extent`, in a buffer that may be reused.
+    fn draw<C: Code>(&self, extent: Rect, pose: &Pose, mut codes: Vec<C>) -> Vec<C> {
+        let parts: Vec<Placed> = (0..self.textures.len())
+            .filter(|&p| self.moving[p])
+            .map(|p| Placed { texture: &self.textures[p], motion: self.motion(p, pose) })
+            .collect();
+        match self.channels {
+            1 => compose::<C, 1>(extent, self.plate.as_ref().map(Still::plate), &parts, &mut codes),
+            _ => compose::<C, 4>(extent, self.plate.as_ref().map(Still::plate), &parts, &mut codes),
+        }
+        codes
     }
 
     /// Forgets the masks that were not asked for longest until `bytes` more fit; the texels of one that

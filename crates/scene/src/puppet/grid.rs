@@ -3,6 +3,8 @@
 //! Lattice coordinates are in texels, x right and **y down**, with the rest grid's top left corner at the origin;
 //! texel (i, j) covers [i, i + 1) × [j, j + 1).
 
+use rayon::prelude::*;
+
 /// A rectangle of whole texels, empty when an end is not beyond its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rect {
@@ -162,62 +164,64 @@ impl Rigid {
 pub(crate) struct Texture {
     /// The texels that are not clear, without the border.
     pub rect: Rect,
-    /// 1 or 3.
-    pub channels: usize,
-    /// `channels` planes of (width + 2) × (height + 2).
+    /// 1 for grey; 4 for R, G, B and a lane that is not used, so that a texel fills a vector register.
+    pub lanes: usize,
+    /// `lanes` values for each of (width + 2) × (height + 2) texels, row by row.
     pub opacity: Vec<f32>,
 }
 
 impl Texture {
-    /// The tight texture of what `opacity` gives for the texels of `within`; one channel when all three are equal.
+    /// The tight texture of what `opacity` gives for the texels of `within`; grey when all three channels are equal.
     pub fn new(within: Rect, opacity: impl Fn(i64, i64) -> [f32; 3] + Sync) -> Self {
-        use rayon::prelude::*;
         // Of each row: the first and the end of what is not clear, and whether it is grey.
         type Row = (Option<(i64, i64)>, bool);
-        let rows: Vec<Row> = (within.y0..within.y1)
-            .into_par_iter()
-            .map(|y| {
-                let mut span = None;
-                let mut grey = true;
-                for x in within.x0..within.x1 {
-                    let [r, g, b] = opacity(x, y);
-                    if r > 0.0 || g > 0.0 || b > 0.0 {
-                        span = Some((span.map_or(x, |(first, _)| first), x + 1));
-                        grey &= r == g && g == b;
-                    }
+        let scan = |y: i64| -> Row {
+            let mut span = None;
+            let mut grey = true;
+            for x in within.x0..within.x1 {
+                let [r, g, b] = opacity(x, y);
+                if r > 0.0 || g > 0.0 || b > 0.0 {
+                    span = Some((span.map_or(x, |(first, _)| first), x + 1));
+                    grey &= r == g && g == b;
                 }
-                (span, grey)
-            })
-            .collect();
+            }
+            (span, grey)
+        };
+        let rows: Vec<Row> = (within.y0..within.y1).into_par_iter().map(scan).collect();
         let mut rect = Rect::EMPTY;
         for (y, (span, _)) in (within.y0..).zip(&rows) {
             if let Some((x0, x1)) = *span {
                 rect = rect.union(Rect { x0, y0: y, x1, y1: y + 1 });
             }
         }
-        let channels = if rows.iter().all(|(_, grey)| *grey) { 1 } else { 3 };
-        let stride = rect.width() + 2;
-        let mut values = vec![0.0; channels * stride * (rect.height() + 2)];
-        for (c, plane) in values.chunks_exact_mut(stride * (rect.height() + 2)).enumerate() {
-            plane[stride..].par_chunks_exact_mut(stride).take(rect.height()).enumerate().for_each(
-                |(j, row)| {
-                    for (i, value) in row[1..stride - 1].iter_mut().enumerate() {
-                        *value = opacity(rect.x0 + i as i64, rect.y0 + j as i64)[c];
-                    }
-                },
-            );
-        }
-        Self { rect, channels, opacity: values }
+        let lanes = if rows.iter().all(|(_, grey)| *grey) { 1 } else { 4 };
+        let stride = (rect.width() + 2) * lanes;
+        let mut values = vec![0.0; stride * (rect.height() + 2)];
+        values[stride..].par_chunks_exact_mut(stride).take(rect.height()).enumerate().for_each(|(j, row)| {
+            for (i, texel) in row[lanes..stride - lanes].chunks_exact_mut(lanes).enumerate() {
+                let rgb = opacity(rect.x0 + i as i64, rect.y0 + j as i64);
+                texel.iter_mut().zip(rgb).for_each(|(value, opacity)| *value = opacity);
+            }
+        });
+        Self { rect, lanes, opacity: values }
     }
 
-    /// Values a padded row.
+    /// A grey texture as a coloured one.
+    pub fn widen(&mut self) {
+        if self.lanes == 1 {
+            self.opacity = self.opacity.iter().flat_map(|&o| [o, o, o, 0.0]).collect();
+            self.lanes = 4;
+        }
+    }
+
+    /// Texels a row, with the border.
     pub fn stride(&self) -> usize {
         self.rect.width() + 2
     }
 
-    /// The padded plane of channel `c`; a grey texture answers for all three.
-    pub fn plane(&self, c: usize) -> &[f32] {
-        let size = self.stride() * (self.rect.height() + 2);
-        &self.opacity[(c % self.channels) * size..][..size]
+    /// The texels, with the border; L must be the number of lanes.
+    pub fn texels<const L: usize>(&self) -> &[[f32; L]] {
+        debug_assert_eq!(L, self.lanes);
+        self.opacity.as_chunks().0
     }
 }

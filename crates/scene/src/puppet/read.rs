@@ -181,6 +181,11 @@ fn lattice(node: &Node, texels: &Node, art: &Art, rows: Option<usize>) -> Option
         let rule = format!("the grid would have {columns} columns; at most {}", limits::IMAGE_SIDE);
         return texels.refuse(rule);
     }
+    if let Drawing::Svg(svg) = &art.drawing
+        && let Err(rule) = svg.check_cost(rows)
+    {
+        return texels.refuse(rule);
+    }
     let lattice = Lattice::new(size, rows);
     let all = lattice.columns * lattice.rows * art.parts.len().max(1);
     if all > limits::PART_TEXELS {
