@@ -255,7 +255,7 @@ fn svgs_that_are_bombs_or_reach_outside_are_refused() {
         (format!("{SVG}<filter id=\"f\"/><rect filter=\"url(#f)\" width=\"9\" height=\"9\"/></svg>"), "has <filter>"),
         (format!("{SVG}<rect filter=\"blur(9px)\" width=\"9\" height=\"9\"/></svg>"), "has a filter"),
         (format!("{SVG}<path stroke=\"red\" stroke-dasharray=\"1e-6\" d=\"M0 0H128\"/></svg>"), "dashes; at most"),
-        (format!("{SVG}{}{rect}{}</svg>", "<g opacity=\"0.5\">".repeat(60), "</g>".repeat(60)), ""),
+        (format!("{SVG}{}{rect}{}</svg>", "<g opacity=\"0.99\">".repeat(60), "</g>".repeat(60)), ""),
     ];
     for (svg, wanted) in &cases {
         let found = with_svg(svg);
