@@ -9,6 +9,7 @@
 //! | [`clustered`] | choices of participants × pairs: intraclass correlation, bootstrap, robust and mixed logit |
 //! | [`pairwise`] | Bradley–Terry and Thurstone scaling in JOD, circular triads, odd observers |
 //! | [`random`] | the seeded generator behind every resampling |
+//! | [`paper`] | the paper's tests computed again, and what it left out |
 //! | [`numerics`] | how exact all of this is, measured |
 //!
 //! Invalid input is an `Err` ([`StatsError`]) that names the field, the value and the rule. NaN is always invalid
@@ -26,6 +27,7 @@ mod normal;
 pub mod numerics;
 mod optimise;
 pub mod pairwise;
+pub mod paper;
 pub mod random;
 
 pub use error::{Result, StatsError};

@@ -51,10 +51,16 @@ impl Moments {
     /// The standard deviation when it can divide.
     ///
     /// # Errors
-    /// [`StatsError::TooFew`] for one value, [`StatsError::ZeroVariance`] when all are the same.
+    /// [`StatsError::TooFew`] for one value, [`StatsError::ZeroVariance`] when all are the same,
+    /// [`StatsError::Invalid`] when it overflows.
     pub(crate) fn spread(&self, name: &'static str, undefined: &'static str) -> Result<f64> {
         match self.sd {
             None => Err(StatsError::TooFew { name, len: self.n, needed: 2 }),
+            Some(sd) if sd.is_infinite() => Err(StatsError::Invalid {
+                name: "sd",
+                value: sd,
+                rule: "must not overflow: scale the values down",
+            }),
             Some(0.0) => Err(StatsError::ZeroVariance { name, len: self.n, value: self.min, undefined }),
             Some(sd) => Ok(sd),
         }

@@ -7,7 +7,7 @@
 use super::dd::Dd;
 use super::quadrature::integrate_decay;
 use super::root;
-use super::special::{deviance, exp_m1_minus, ln_1p_minus, stirling_error};
+use super::special::{LN_SQRT_2PI, deviance, exp_m1_minus, ln_1p_minus, stirling_error};
 use crate::{Result, StatsError};
 
 /// What a and b may be.
@@ -181,9 +181,38 @@ pub(crate) fn tails(a: f64, b: f64, x: Dd, y: Dd) -> Tails {
     }
 }
 
+/// x below which (1 − x)^b is 1 to every digit, for b up to [`NEGLIGIBLE_UP_TO`].
+pub(crate) const NEGLIGIBLE: f64 = 1e-290;
+pub(crate) const NEGLIGIBLE_UP_TO: f64 = 1e10;
+
+/// The tails at an x so small that I_x = x^a / (a B(a, b)): given as ln x, because x itself may underflow.
+pub(crate) fn leading_tails(a: f64, b: f64, ln_x: Dd) -> Tails {
+    let ln_lower = ln_x * a.into() - ln_a_beta(a, b);
+    let lower = ln_lower.exp().min(1.0);
+    let ln_lower = ln_lower.value().min(0.0);
+    let upper = -ln_lower.exp_m1();
+    Tails { lower, upper, ln_lower, ln_upper: upper.ln() }
+}
+
+/// ln(a B(a, b)), for b up to [`NEGLIGIBLE_UP_TO`].
+pub(crate) fn ln_a_beta(a: f64, b: f64) -> Dd {
+    let half = Dd::from(0.5);
+    let n = Dd::sum(a, b);
+    let (x, y) = (Dd::from(a), Dd::from(b));
+    // Stirling's formula for the three gammas; their linear terms cancel.
+    (x + half) * x.ln() + (y - half) * y.ln() - (n - half) * n.ln()
+        + LN_SQRT_2PI
+        + stirling_error(a)
+        + stirling_error(b)
+        - stirling_error(a + b)
+}
+
 fn tails_below_mean(a: f64, b: f64, x: Dd, y: Dd, lambda: Dd) -> Tails {
+    if x.hi < NEGLIGIBLE && b < NEGLIGIBLE_UP_TO {
+        return leading_tails(a, b, x.ln());
+    }
     let (lower, ln_lower) = one_tail(a, b, x, y, lambda);
-    if lower > 0.7 && a < 1.0 {
+    if lower > 0.7 && a < 1.0 && x.hi > NEGLIGIBLE {
         // A mean far above the median, so that the upper tail is the small one after all.
         let (upper, ln_upper) = one_tail(b, a, y, x, -lambda);
         return Tails::from_lower(upper, ln_upper).swapped();

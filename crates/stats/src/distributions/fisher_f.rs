@@ -1,6 +1,6 @@
 //! Fisher's F distribution.
 
-use super::beta::{self, Tails, shape};
+use super::beta::{self, Tails};
 use super::dd::Dd;
 use crate::{Result, StatsError};
 
@@ -12,12 +12,12 @@ pub struct FisherF {
 }
 
 impl FisherF {
-    /// Both in [1e-280, 1e280].
+    /// Both in [1e-10, 1e10].
     ///
     /// # Errors
     /// [`StatsError::Invalid`] for anything else.
     pub fn new(df1: f64, df2: f64) -> Result<Self> {
-        Ok(Self { df1: shape("df1", df1)?, df2: shape("df2", df2)? })
+        Ok(Self { df1: degrees("df1", df1)?, df2: degrees("df2", df2)? })
     }
 
     /// P(F ≤ f).
@@ -42,16 +42,31 @@ impl FisherF {
         if f.is_nan() || f < 0.0 {
             return Err(StatsError::Invalid { name: "f", value: f, rule: "must be at least 0" });
         }
-        let odds = df1 / df2 * f;
-        if odds < 1e-290 || f == 0.0 {
+        if f == 0.0 {
             return Ok(Tails::NOTHING_BELOW);
         }
-        if odds > 1e290 {
+        if f.is_infinite() {
             return Ok(Tails::NOTHING_BELOW.swapped());
+        }
+        let odds = df1 / df2 * f;
+        let ln_odds = || Dd::from(df1).ln() - Dd::from(df2).ln() + Dd::from(f).ln();
+        if odds < beta::NEGLIGIBLE {
+            return Ok(beta::leading_tails(df1 / 2.0, df2 / 2.0, ln_odds()));
+        }
+        if odds > 1.0 / beta::NEGLIGIBLE {
+            return Ok(beta::leading_tails(df2 / 2.0, df1 / 2.0, -ln_odds()).swapped());
         }
         // Divide before multiplying, so that nothing overflows.
         let odds = Dd::from(df1) / df2.into() * f.into();
         let whole = odds + 1.0.into();
         Ok(beta::tails(df1 / 2.0, df2 / 2.0, odds / whole, Dd::from(1.0) / whole))
+    }
+}
+
+fn degrees(name: &'static str, value: f64) -> Result<f64> {
+    if (1e-10..=beta::NEGLIGIBLE_UP_TO).contains(&value) {
+        Ok(value)
+    } else {
+        Err(StatsError::Invalid { name, value, rule: "must lie in [1e-10, 1e10]" })
     }
 }

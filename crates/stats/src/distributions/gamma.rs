@@ -3,11 +3,11 @@
 //! P(a, x) = x^a e^−x / Γ(a) · ∫₀^∞ exp(−as + x (1 − e^−s)) ds and Q(a, x) = x^a e^−x / Γ(a) · ∫₀^∞ e^(−xs) (1 + s)^(a−1) ds
 //! (substitute t = x e^−s and t = x (1 + s) in DLMF 8.2.1–2): the same scheme as for the beta distribution.
 
-use super::beta::{Tails, shape};
+use super::beta::{self, Tails, shape};
 use super::dd::Dd;
 use super::quadrature::integrate_decay;
 use super::root;
-use super::special::{deviance, exp_m1_minus, ln_1p_minus, stirling_error};
+use super::special::{deviance, exp_m1_minus, ln_1p_minus, ln_gamma, stirling_error};
 use crate::{Result, StatsError};
 
 /// χ² with `df` degrees of freedom.
@@ -95,6 +95,14 @@ pub(crate) fn tails(a: f64, x: f64) -> Tails {
     }
     if x > 1e290 {
         return Tails::NOTHING_BELOW.swapped();
+    }
+    if x < beta::NEGLIGIBLE {
+        // x^a / Γ(a + 1): e^−x is 1.
+        let ln_lower = Dd::from(x).ln() * a.into() - ln_gamma(a + 1.0).into();
+        let lower = ln_lower.exp().min(1.0);
+        let ln_lower = ln_lower.value().min(0.0);
+        let upper = -ln_lower.exp_m1();
+        return Tails { lower, upper, ln_lower, ln_upper: upper.ln() };
     }
     let excess = Dd::sum(x, -a);
     let exponent = -deviance(a, x.into(), excess) - stirling_error(a);

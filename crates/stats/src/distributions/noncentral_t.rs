@@ -69,7 +69,12 @@ impl NoncentralT {
         while f(t - reach) > 0.0 || f(t + reach) < 0.0 {
             reach *= 2.0;
         }
-        Ok(root::increasing_secant(f, t - reach, t + reach, t + z * (1.0 + t * t / (2.0 * df)).sqrt()))
+        Ok(root::increasing_by_differences(
+            f,
+            t - reach,
+            t + reach,
+            t + z * (1.0 + t * t / (2.0 * df)).sqrt(),
+        ))
     }
 
     fn tail(&self, t: f64, upper: bool) -> f64 {

@@ -24,11 +24,12 @@ pub(crate) fn increasing(f: &dyn Fn(f64) -> Local, mut low: f64, mut high: f64, 
             high = x
         }
         let newton = x - value / slope;
-        let next = if newton > low && newton < high && (newton - x).abs() < 0.75 * last_step {
-            newton
-        } else {
-            low + (high - low) / 2.0
-        };
+        let next =
+            if slope.is_finite() && newton > low && newton < high && (newton - x).abs() < 0.75 * last_step {
+                newton
+            } else {
+                low + (high - low) / 2.0
+            };
         last_step = (next - x).abs();
         x = next;
         if last_step <= 1e-17 + 2e-16 * x.abs() {
@@ -38,18 +39,13 @@ pub(crate) fn increasing(f: &dyn Fn(f64) -> Local, mut low: f64, mut high: f64, 
     x
 }
 
-/// [`increasing`] for a function whose slope is taken from its last two values.
-pub(crate) fn increasing_secant(f: impl Fn(f64) -> f64, low: f64, high: f64, start: f64) -> f64 {
-    let last = std::cell::Cell::new((f64::NAN, f64::NAN));
+/// [`increasing`] for a function without a derivative: its slope is a difference over a millionth. (A secant of the last
+/// two values can be so much steeper than the function at the new one that its step stands still.)
+pub(crate) fn increasing_by_differences(f: impl Fn(f64) -> f64, low: f64, high: f64, start: f64) -> f64 {
     let with_slope = |x: f64| {
         let value = f(x);
-        let (last_x, last_value) = last.replace((x, value));
-        let mut slope = (value - last_value) / (x - last_x);
-        if slope.is_nan() {
-            let near = x + 1e-3 * x.abs().max(1e-3);
-            slope = (f(near) - value) / (near - x);
-        }
-        Local { value, slope }
+        let near = x + 1e-6 * x.abs().max(1e-3);
+        Local { value, slope: (f(near) - value) / (near - x) }
     };
     increasing(&with_slope, low, high, start)
 }
@@ -65,7 +61,7 @@ pub(crate) fn in_logarithm(f: impl Fn(f64) -> f64, high: f64, start: f64) -> f64
     if in_ln(ln_high) <= 0.0 {
         return high;
     }
-    let v = increasing_secant(in_ln, low, ln_high, start.ln());
+    let v = increasing_by_differences(in_ln, low, ln_high, start.ln());
     // The logarithm holds fewer digits than x: one step on x itself puts them back.
     let x = v.exp().min(high);
     let near = x * 0.9999;

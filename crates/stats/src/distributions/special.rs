@@ -61,7 +61,6 @@ fn stirling_series(a: f64) -> f64 {
 }
 
 /// ln Γ(a) for a > 0, correct to an ulp of max(1, |ln Γ|).
-#[allow(dead_code)] // for the Bayes factor and the fits
 pub(crate) fn ln_gamma(a: f64) -> f64 {
     if a > 1e300 {
         return if a.is_infinite() { a } else { a * (a.ln() - 1.0) };

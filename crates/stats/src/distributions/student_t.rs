@@ -3,14 +3,13 @@
 //! Its tail is an incomplete beta function, P(T > t) = ½ I_x(df/2, ½) with x = df / (df + t²) for t > 0
 //! (Abramowitz & Stegun 26.7.1); x and 1 − x are formed to 31 digits, so that neither a tiny nor a huge t loses any.
 
-use super::beta::{self, ln_density_core};
+use super::beta::{self, ln_a_beta, ln_density_core};
 use super::dd::Dd;
 use super::root;
-use super::special::{LN_SQRT_2PI, stirling_error};
 use crate::{Result, StatsError};
 
 /// Above this many degrees of freedom, t is the normal distribution to every digit.
-const NORMAL_FROM: f64 = 1e280;
+const NORMAL_FROM: f64 = 1e250;
 
 /// Student's t with `df` degrees of freedom.
 ///
@@ -136,7 +135,7 @@ impl StudentT {
         if t > 1e15 && t / df.sqrt() > 1e15 {
             // The leading term x^a / (2 a B(a, ½)) of the tail; the next is 1e-30 of it.
             let ln_x = Dd::from(df).ln() - Dd::from(t).ln() * 2.0.into();
-            let tail = ln_x * a.into() - ln_a_beta_half(a) - Dd::LN_2;
+            let tail = ln_x * a.into() - ln_a_beta(a, 0.5) - Dd::LN_2;
             let upper = tail.exp().min(0.5);
             return Point { upper, ln_upper: tail.value(), central: 0.5 - upper };
         }
@@ -160,7 +159,7 @@ impl StudentT {
         let a = df / 2.0;
         if t > 1e15 && t / df.sqrt() > 1e15 {
             // df^a t^−(df + 1) / B(a, ½), the leading term.
-            let ln_beta = ln_a_beta_half(a) - Dd::from(a).ln();
+            let ln_beta = ln_a_beta(a, 0.5) - Dd::from(a).ln();
             return (Dd::from(df).ln() * a.into() - Dd::sum(df, 1.0) * Dd::from(t).ln() - ln_beta).exp();
         }
         // Flat to 30 digits below this.
@@ -204,14 +203,4 @@ fn shares(df: f64, t: f64) -> (Dd, Dd) {
     let square = Dd::product(t, t);
     let whole = df + square;
     (df / whole, square / whole)
-}
-
-/// ln(a B(a, ½)).
-fn ln_a_beta_half(a: f64) -> Dd {
-    let half = Dd::from(0.5);
-    let n = Dd::sum(a, 0.5);
-    let d = Dd::from(a);
-    // Stirling's formula for the three gammas of B(a, ½); their linear terms cancel.
-    d.ln() + LN_SQRT_2PI + (d - half) * d.ln() - (n - half) * n.ln() + stirling_error(a) + stirling_error(0.5)
-        - stirling_error(a + 0.5)
 }

@@ -86,10 +86,10 @@ def gamma_tails(a, x):
     return +total, +upper
 
 
-def noncentral_t_tails(df, delta, t):
-    """(cdf, sf) for t > 0, by the Poisson mixture at 420 digits."""
+def noncentral_t_tails(df, delta, t, digits=420):
+    """(cdf, sf) for t > 0, by the Poisson mixture."""
     before = mp.dps
-    mp.dps = 420
+    mp.dps = digits
     df, delta, t = mpf(df), mpf(delta), mpf(t)
     b = df / 2
     x, y = t * t / (t * t + df), df / (t * t + df)
@@ -109,7 +109,7 @@ def noncentral_t_tails(df, delta, t):
     while True:
         term = p * half + q * one
         total += term
-        if j > l and p + abs(q) < mpf(10) ** -400:
+        if j > l and p + abs(q) < mpf(10) ** (20 - digits):
             break
         # I_x(a + 1, b) = I_x(a, b) − x^a y^b / (a B(a, b))
         half -= half_step

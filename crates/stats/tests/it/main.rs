@@ -1,4 +1,6 @@
 //! The crate against reference values.
 
 mod distributions;
+mod inference;
 mod nist;
+mod properties;
