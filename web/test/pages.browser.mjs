@@ -358,6 +358,24 @@ test("console: sign in, the numbers in full precision, back works, sign out", as
   await v.hook("login-password").waitFor();
 });
 
+test("console: the full report and the paper come with their exact numbers and described plots", async (t) => {
+  const v = await visit(t);
+  await v.page.goto(`${v.mock.url}/console/studies/${study.id}`);
+  await v.hook("login-password").fill("wayang");
+  await v.hook("login-submit").click();
+  const block = v.hook("report-photographs");
+  assert.equal(await block.getAttribute("data-p-holm"), "0.000611346");
+  assert.equal(await block.getAttribute("data-g"), "0.726");
+  assert.equal(await v.hook("paper-animation-mc").getAttribute("data-t"), "-3.98348229826");
+  await v.page.getByText("No whole number of participants from 25 to 40 gives −3.293").waitFor();
+  const described = await v.page.locator("svg.plot").evaluateAll((all) => all.map((svg) => svg.querySelector("title")?.textContent !== "" && (svg.querySelector("desc")?.textContent ?? "").length > 20));
+  assert.ok(described.length >= 4 && described.every(Boolean), JSON.stringify(described));
+  // A study without the paper's name has no such section, and an empty one says what is to come.
+  await v.page.goto(`${v.mock.url}/console/studies/empty`);
+  await v.page.getByText("appear here with the first answers").waitFor();
+  assert.equal(await v.hook("paper-animation-mc").count(), 0);
+});
+
 test("console: data never become markup", async (t) => {
   const evil = "<img src=x onerror=alert(1)>";
   const hostile = (path, sessions, stuff) => {
