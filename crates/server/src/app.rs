@@ -18,6 +18,8 @@ pub(crate) struct App {
     pub(crate) limiter: Limiter,
     /// argon2 takes 19 MiB and a core for each password it judges.
     pub(crate) judging: Semaphore,
+    /// A report resamples participants thousands of times.
+    pub(crate) reporting: Semaphore,
     pub(crate) secure_cookies: bool,
     /// Earlier versions of studies, which sessions that began with them go on using.
     versions: RwLock<HashMap<String, Arc<StudyDefinition>>>,
@@ -58,6 +60,7 @@ impl App {
             studies: studies.into_iter().map(|study| (study.id.clone(), loaded(study))).collect(),
             limiter: Limiter::default(),
             judging: Semaphore::new(2),
+            reporting: Semaphore::new(1),
             secure_cookies,
             versions: RwLock::default(),
         }

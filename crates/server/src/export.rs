@@ -140,8 +140,8 @@ pub fn codebook_csv() -> String {
     out
 }
 
-/// RFC 4180: quoted where need be, CRLF at the end. A cell that a spreadsheet would take for a formula gets a leading '.
-fn write_row(out: &mut String, cells: impl IntoIterator<Item = String>) {
+/// RFC 4180: quoted where need be, CRLF at the end. A cell that a spreadsheet would take for a formula gets an apostrophe before it.
+pub(crate) fn write_row(out: &mut String, cells: impl IntoIterator<Item = String>) {
     for (i, mut cell) in cells.into_iter().enumerate() {
         if i > 0 {
             out.push(',');

@@ -1,11 +1,13 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
-use kelir_store::{AnswerRow, Participants, Store, StoreError, StudyStimulus};
-use kelir_study::StudyDefinition;
+use crate::export::write_row;
+use kelir_store::{AnswerRow, ChainReport, Participants, Store, StoreError, StudyStimulus};
 use kelir_study::analysis::{Answer, BlockSummary, summarise};
+use kelir_study::report::{BlockReport, Observation, Report};
 use kelir_study::screening::{Exclusion, Seen, screen};
+use kelir_study::{Screening, StudyDefinition};
 use serde::Serialize;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -41,6 +43,38 @@ pub struct Excluded {
     pub reasons: Vec<Exclusion>,
 }
 
+/// Everything kelir can say of one version of a study, as a report or a paper's methods and results need it.
+#[derive(Clone, Debug, Serialize)]
+pub struct StudyReport {
+    /// Study's id.
+    pub study: String,
+    /// Study's title.
+    pub title: String,
+    /// The question over every pair.
+    pub question: String,
+    /// Version of the study that this is of.
+    pub config_hash: String,
+    /// Version of kelir that judged.
+    pub kelir_version: String,
+    /// How many people take part.
+    pub participants: Participants,
+    /// Who is left out by the study's rules of screening, and why.
+    pub excluded: Vec<Excluded>,
+    /// The study's rules of screening.
+    pub screening: Screening,
+    /// Blocks, scale and methods, without the excluded.
+    #[serde(flatten)]
+    pub report: Report,
+    /// The blocks with everybody; null when nobody is excluded.
+    pub blocks_with_excluded: Option<Vec<BlockReport>>,
+    /// What was shown, with how it was made and its measured error.
+    pub stimuli: Vec<StudyStimulus>,
+    /// Other versions of the study that have sessions; their answers are not in here.
+    pub other_versions: Vec<OtherVersion>,
+    /// Whether the stored answers are what was written: the chain over all studies of the data folder.
+    pub chain: ChainReport,
+}
+
 /// A version of the study that the results leave out.
 #[derive(Clone, Debug, Serialize)]
 pub struct OtherVersion {
@@ -62,8 +96,6 @@ pub async fn results(store: &Store, study: &StudyDefinition) -> Result<StudyResu
     let left_out: HashSet<&str> = excluded.iter().map(|e| e.session_id.as_str()).collect();
     let blocks = summarise(study, answers.iter().map(answer).filter(|a| !left_out.contains(a.session_id)));
     let everybody = (!excluded.is_empty()).then(|| summarise(study, answers.iter().map(answer)));
-    let other =
-        store.sessions_by_version(&study.id).await?.into_iter().filter(|(hash, _)| *hash != config_hash);
     Ok(StudyResults {
         study: study.id.clone(),
         title: study.title.clone(),
@@ -72,9 +104,88 @@ pub async fn results(store: &Store, study: &StudyDefinition) -> Result<StudyResu
         blocks_with_excluded: everybody,
         excluded,
         stimuli: store.study_stimuli(&study.id, &config_hash).await?,
-        other_versions: other.map(|(config_hash, sessions)| OtherVersion { config_hash, sessions }).collect(),
+        other_versions: other_versions(store, &study.id, &config_hash).await?,
         config_hash,
     })
+}
+
+/// The full report of this version of a study from what is stored now. Resampling takes a while with many participants.
+///
+/// # Errors
+/// The store cannot be read.
+pub async fn report(store: &Store, study: &StudyDefinition) -> Result<StudyReport, StoreError> {
+    let config_hash = study.config_hash();
+    let idle = Duration::from_secs(60 * u64::from(study.idle_minutes));
+    let answers = store.answers(&study.id, &config_hash).await?;
+    let excluded = exclusions(study, &answers);
+    let left_out = names(&excluded);
+    let everybody: Vec<Observation<'_>> = answers.iter().map(observation).collect();
+    let judged: Vec<Observation<'_>> =
+        everybody.iter().filter(|o| !left_out.contains(o.answer.session_id)).copied().collect();
+    let report = Report::of(study, &judged);
+    let with_excluded = (!excluded.is_empty()).then(|| Report::of(study, &everybody).blocks);
+    Ok(StudyReport {
+        study: study.id.clone(),
+        title: study.title.clone(),
+        question: study.question.clone(),
+        kelir_version: env!("CARGO_PKG_VERSION").to_owned(),
+        participants: store.participants(&study.id, &config_hash, idle).await?,
+        screening: study.screening.clone(),
+        report,
+        blocks_with_excluded: with_excluded,
+        excluded,
+        stimuli: store.study_stimuli(&study.id, &config_hash).await?,
+        other_versions: other_versions(store, &study.id, &config_hash).await?,
+        chain: store.verify_chain().await?,
+        config_hash,
+    })
+}
+
+/// Choices as pwcmp reads them, one row a trial: `observer, session, scene, condition_A, condition_B, is_A_selected`, and
+/// `left_condition`, since A and B are the block's conditions in file order and never mean sides. Without the excluded
+/// and without catch blocks.
+///
+/// # Errors
+/// The store cannot be read.
+pub async fn pairs_csv(store: &Store, study: &StudyDefinition) -> Result<String, StoreError> {
+    let config_hash = study.config_hash();
+    let answers = store.answers(&study.id, &config_hash).await?;
+    let excluded = exclusions(study, &answers);
+    let left_out = names(&excluded);
+    let sessions = store.sessions(&study.id, &config_hash).await?;
+    let observers: HashMap<&str, &str> =
+        sessions.iter().map(|s| (s.session_id.as_str(), s.subject_id.as_str())).collect();
+    let mut out = String::new();
+    let header =
+        ["observer", "session", "scene", "condition_A", "condition_B", "is_A_selected", "left_condition"];
+    write_row(&mut out, header.map(str::to_owned));
+    for row in answers.iter().filter(|row| !left_out.contains(row.session_id.as_str())) {
+        let Some(block) = study.block(&row.block_id).filter(|block| !block.catch) else { continue };
+        let [a, b] = &block.conditions;
+        let observer = observers.get(row.session_id.as_str()).copied().unwrap_or_default();
+        let selected = u8::from(row.chosen_condition() == a).to_string();
+        let cells = [observer, &row.session_id, &row.pair_id, a, b, &selected, &row.left_condition];
+        write_row(&mut out, cells.map(str::to_owned));
+    }
+    Ok(out)
+}
+
+fn names(excluded: &[Excluded]) -> HashSet<&str> {
+    excluded.iter().map(|e| e.session_id.as_str()).collect()
+}
+
+async fn other_versions(
+    store: &Store,
+    study_id: &str,
+    config_hash: &str,
+) -> Result<Vec<OtherVersion>, StoreError> {
+    let versions = store.sessions_by_version(study_id).await?.into_iter();
+    let other = versions.filter(|(hash, _)| hash != config_hash);
+    Ok(other.map(|(config_hash, sessions)| OtherVersion { config_hash, sessions }).collect())
+}
+
+fn observation(row: &AnswerRow) -> Observation<'_> {
+    Observation { answer: answer(row), chose_left: row.chose_left, rt_ms: row.rt_ms }
 }
 
 fn answer(row: &AnswerRow) -> Answer<'_> {
@@ -130,6 +241,17 @@ pub async fn of_study(data: &Path, study: &str) -> Result<StudyResults, ResultsE
     let results = results(&store, &study).await;
     store.close().await;
     Ok(results?)
+}
+
+/// The full report of a study's latest version, from a data folder.
+///
+/// # Errors
+/// As [`of_study`].
+pub async fn report_of_study(data: &Path, study: &str) -> Result<StudyReport, ResultsError> {
+    let (store, study) = open_study(data, study).await?;
+    let report = report(&store, &study).await;
+    store.close().await;
+    Ok(report?)
 }
 
 /// A data folder's store, and the latest version of a study in it.

@@ -9,6 +9,7 @@ mod problems;
 
 pub mod analysis;
 pub mod plan;
+pub mod report;
 pub mod screening;
 
 pub use definition::{Block, Completion, Condition, Kind, Pair, Screening, StudyDefinition, Texts};

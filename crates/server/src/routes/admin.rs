@@ -4,7 +4,7 @@ use crate::app::{App, Stimuli};
 use crate::error::ApiError;
 use crate::export::{codebook_csv, responses_csv};
 use crate::extract::{Parameters, Researcher};
-use crate::results::results;
+use crate::results::{pairs_csv, report, results};
 use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -46,6 +46,33 @@ pub(crate) async fn get_results(
 ) -> Result<Response, ApiError> {
     let loaded = app.study(&study)?;
     Ok(super::fresh(StatusCode::OK, results(&app.store, &loaded.study).await?))
+}
+
+/// The full report. It resamples participants, which keeps a core busy: one at a time.
+pub(crate) async fn get_report(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(study): Parameters<String>,
+) -> Result<Response, ApiError> {
+    let loaded = app.study(&study)?;
+    let permit = app.reporting.acquire().await.map_err(ApiError::internal)?;
+    let (task, definition) = (app.clone(), loaded.study.clone());
+    // On a thread of its own kind: answering participants must not wait for it.
+    let judged = tokio::task::spawn_blocking(move || {
+        tokio::runtime::Handle::current().block_on(report(&task.store, &definition))
+    });
+    let report = judged.await.map_err(ApiError::internal)??;
+    drop(permit);
+    Ok(super::fresh(StatusCode::OK, report))
+}
+
+pub(crate) async fn get_pairs_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(study): Parameters<String>,
+) -> Result<Response, ApiError> {
+    let loaded = app.study(&study)?;
+    Ok(csv(&format!("{study}-pairs.csv"), pairs_csv(&app.store, &loaded.study).await?))
 }
 
 pub(crate) async fn get_responses_csv(

@@ -205,3 +205,50 @@ async fn the_screened_are_left_out_named_and_shown_apart() {
     assert_eq!(after["blocks_with_excluded"][0]["n"], 3);
     assert_eq!(after["blocks_with_excluded"][1]["n"], 2);
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_report_and_the_pairs_agree_with_the_results() {
+    let client = Client::ready().await;
+    for choices in [
+        ["left", "left", "left"],
+        ["left", "right", "left"],
+        ["right", "right", "right"],
+        ["left", "left", "right"],
+    ] {
+        client.take(json!({}), choices).await;
+    }
+    let cookie = client.sign_in().await;
+    let path = "/api/v1/admin/studies/shadow-puppets";
+    let results = client.research(&cookie, &format!("{path}/results")).await.json();
+    let report = client.research(&cookie, &format!("{path}/report")).await.json();
+    for key in ["study", "config_hash", "participants", "stimuli"] {
+        assert_eq!(report[key], results[key], "{key}");
+    }
+    for (block, short) in
+        report["blocks"].as_array().unwrap().iter().zip(results["blocks"].as_array().unwrap())
+    {
+        for (key, value) in short.as_object().unwrap() {
+            assert_eq!(&block[key], value, "{key}");
+        }
+        assert_eq!(block["analysis"]["proportion"]["trials"], 4 * short["pairs"].as_u64().unwrap());
+    }
+    assert_eq!((&report["chain"]["rows"], &report["chain"]["broken"]), (&json!(12), &json!(null)));
+    let offline =
+        kelir_server::results::report_of_study(client.folder.path(), "shadow-puppets").await.unwrap();
+    assert!(serde_json::to_value(&offline).unwrap() == report, "the command says the same");
+
+    let pairs = client.research(&cookie, &format!("{path}/pairs.csv")).await.text();
+    let rows: Vec<Vec<&str>> = pairs.trim_end().split("\r\n").map(|line| line.split(',').collect()).collect();
+    let header =
+        ["observer", "session", "scene", "condition_A", "condition_B", "is_A_selected", "left_condition"];
+    assert_eq!((rows[0].as_slice(), rows.len()), (&header[..], 13));
+    // A is pa, the target, in both blocks: what is counted here is what the report counts.
+    let chosen = rows[1..].iter().filter(|row| row[3] == "pa" && row[5] == "1").count() as u64;
+    let counted: u64 = report["blocks"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|b| b["analysis"]["proportion"]["chosen"].as_u64().unwrap())
+        .sum();
+    assert_eq!(chosen, counted);
+}

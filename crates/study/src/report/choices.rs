@@ -1,0 +1,155 @@
+//! Everything that is said of one table of choices: the paper's test, and what it leaves out.
+
+use crate::analysis::TTest;
+use kelir_stats::StatsError;
+use kelir_stats::clustered::{
+    Bootstrap, BootstrapMethod, Cluster, Correction, IccEstimator, Intraclass, MixedLogit, RobustLogit, Row,
+    bootstrap, independence_warning, intraclass, mixed_logit, robust_logit,
+};
+use kelir_stats::inference::{
+    Bounds, EffectSize, Equivalence, Interval, JzsBayesFactor, ORDINARY_PRIOR_SCALE, TPlan, effect_size,
+    equivalence, jzs_bayes_factor, power_t, t_test_from_counts, wilson,
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Level of every interval.
+pub const LEVEL: f64 = 0.95;
+/// Level of every test that a power is worked out for.
+pub const ALPHA: f64 = 0.05;
+/// Resamples of a bootstrap.
+pub const REPLICATES: usize = 2000;
+/// True effects, in standard deviations, that powers are worked out for.
+pub const POWER_EFFECTS: [f64; 3] = [0.2, 0.5, 0.8];
+
+/// Numbers of target choices per participant, judged.
+#[derive(Clone, Debug, Serialize)]
+pub struct ChoiceAnalysis {
+    /// The paper's two-tailed t-test against half the pairs.
+    pub t_test: TTest,
+    /// Cohen's d and Hedges' g with their intervals; null where t is not defined.
+    pub effect: Option<EffectSize>,
+    /// Two one-sided tests: is the mean equivalent to half the pairs, within ±0.5 choices and within ±0.5 SD?
+    pub equivalence: Vec<Equivalence>,
+    /// Evidence for and against "no effect".
+    pub bayes: Option<JzsBayesFactor>,
+    /// Power of this test with as many participants, for true effects of [`POWER_EFFECTS`].
+    pub power: Vec<TPlan>,
+    /// Target choices over all trials, with an interval from resampled participants.
+    pub proportion: Option<Proportion>,
+    /// How alike one participant's choices are.
+    pub intraclass: Option<Intraclass>,
+    /// Logistic regression with standard errors from the participants (log odds of a target choice).
+    pub robust_logit: Option<RobustLogit>,
+    /// Logistic regression with a random intercept for each participant.
+    pub mixed_logit: Option<MixedLogit>,
+    /// What is not defined and why, and what a reader must not conclude.
+    pub notes: Vec<String>,
+}
+
+/// A share of choices.
+#[derive(Clone, Debug, Serialize)]
+pub struct Proportion {
+    /// Choices of the target.
+    pub chosen: u64,
+    /// Choices made.
+    pub trials: u64,
+    /// chosen / trials.
+    pub proportion: f64,
+    /// Wilson's interval, which takes the choices as independent: right where each participant made one.
+    pub wilson: Interval,
+    /// The interval from resampled participants; null with fewer than two.
+    pub by_participant: Option<Bootstrap>,
+}
+
+impl Proportion {
+    /// The share of `chosen` among `trials`; `None` without trials.
+    pub fn of(chosen: u64, trials: u64) -> Option<Proportion> {
+        let wilson = wilson(chosen, trials, LEVEL).ok()?;
+        let proportion = chosen as f64 / trials as f64;
+        Some(Proportion { chosen, trials, proportion, wilson, by_participant: None })
+    }
+}
+
+impl ChoiceAnalysis {
+    /// Judges `counts`: number of target choices out of `pairs` → number of participants. `seed` repeats the bootstrap.
+    pub fn of_counts(counts: &BTreeMap<u32, u64>, pairs: u32, seed: u64) -> ChoiceAnalysis {
+        let mu = f64::from(pairs) / 2.0;
+        let t_test = TTest::of_counts(counts, mu);
+        let mut notes = Vec::new();
+        notes.extend(t_test.note.clone());
+        let table: Vec<(f64, u64)> = counts.iter().map(|(x, k)| (f64::from(*x), *k)).collect();
+        let judged = t_test_from_counts(&table, mu).ok();
+        let mut effect = None;
+        let mut bayes = None;
+        let (mut equivalences, mut power) = (Vec::new(), Vec::new());
+        if let Some(test) = &judged {
+            effect = keep("effect size", effect_size(test, LEVEL), &mut notes);
+            bayes = keep("Bayes factor", jzs_bayes_factor(test, ORDINARY_PRIOR_SCALE), &mut notes);
+            for bounds in [Bounds::Points(0.5), Bounds::Sd(0.5)] {
+                equivalences.extend(keep("equivalence", equivalence(test, bounds), &mut notes));
+            }
+            let powers = POWER_EFFECTS.iter().map(|d| power_t(test.n, *d, ALPHA));
+            power = powers.filter_map(Result::ok).collect();
+            if test.p >= ALPHA && equivalences.iter().any(|e| e.p >= ALPHA) {
+                let line = "A difference that is not significant is not shown to be absent: see the tests of equivalence and the Bayes factor.";
+                notes.push(line.to_owned());
+            }
+        }
+        let clusters: Vec<Cluster> = counts
+            .iter()
+            .flat_map(|(successes, people)| {
+                let cluster = Cluster { successes: u64::from(*successes), trials: u64::from(pairs) };
+                std::iter::repeat_n(cluster, usize::try_from(*people).unwrap_or_default())
+            })
+            .collect();
+        let proportion = proportion(&clusters, seed);
+        let several = pairs > 1 && clusters.len() > 1;
+        let mut intraclass_found = None;
+        let (mut robust, mut mixed) = (None, None);
+        if clusters.len() > 1 {
+            let rows = Row::intercept_only(&clusters);
+            robust = keep("robust logit", robust_logit(&rows, Correction::Cr1), &mut notes);
+            if several {
+                let icc = intraclass(&clusters, IccEstimator::FleissCuzick);
+                intraclass_found = keep("intraclass correlation", icc, &mut notes);
+                mixed = keep("random-intercept logit", mixed_logit(&rows), &mut notes);
+                notes.extend(independence_warning(&clusters).ok().flatten().map(|warning| {
+                    format!(
+                        "Wilson's interval of the overall proportion is a per-trial one. {}",
+                        warning.message
+                    )
+                }));
+            }
+        }
+        ChoiceAnalysis {
+            t_test,
+            effect,
+            equivalence: equivalences,
+            bayes,
+            power,
+            proportion,
+            intraclass: intraclass_found,
+            robust_logit: robust,
+            mixed_logit: mixed,
+            notes,
+        }
+    }
+}
+
+fn proportion(clusters: &[Cluster], seed: u64) -> Option<Proportion> {
+    let sum = |of: fn(&Cluster) -> u64| clusters.iter().map(of).sum::<u64>();
+    let mut proportion = Proportion::of(sum(|c| c.successes), sum(|c| c.trials))?;
+    let share = |drawn: &[&Cluster]| {
+        let (chosen, trials) = drawn.iter().fold((0, 0), |(a, b), c| (a + c.successes, b + c.trials));
+        (trials > 0).then(|| chosen as f64 / trials as f64)
+    };
+    proportion.by_participant =
+        bootstrap(clusters, REPLICATES, LEVEL, seed, BootstrapMethod::Percentile, share).ok();
+    Some(proportion)
+}
+
+/// What came out, or `None` and a note that says why not.
+fn keep<T>(what: &str, result: Result<T, StatsError>, notes: &mut Vec<String>) -> Option<T> {
+    result.map_err(|error| notes.push(format!("No {what}: {error}."))).ok()
+}

@@ -1,0 +1,112 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+
+const STUDY: &str = r#"
+title = "t"
+question = "Which?"
+seed = 11
+size = [64, 36]
+estimated_minutes = 1
+texts = { welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }
+conditions = { pa = { technique = "pa" }, mc = { technique = "mc" }, photo = { technique = "mc" } }
+[[blocks]]
+id = "stills"
+title = "Stills"
+kind = "still"
+conditions = ["pa", "mc"]
+target = "pa"
+pairs = [{ id = "a", scene = "a.toml" }, { id = "b", scene = "a.toml" }]
+[[blocks]]
+id = "photos"
+title = "Photos"
+kind = "still"
+conditions = ["photo", "pa"]
+target = "pa"
+pairs = [{ id = "c", scene = "a.toml" }]
+[[blocks]]
+id = "easy"
+title = "Catch"
+kind = "still"
+conditions = ["pa", "mc"]
+target = "pa"
+catch = true
+pairs = [{ id = "d", scene = "a.toml" }]
+"#;
+
+fn study() -> StudyDefinition {
+    StudyDefinition::parse("s.toml", STUDY).unwrap()
+}
+
+/// Participant i chooses the target of pair a when bit 0 of i is set, of b bit 1, of c bit 2.
+fn ids() -> Vec<String> {
+    (0..16).map(|i| format!("p{i:02}")).collect()
+}
+
+fn observations(ids: &[String]) -> Vec<Observation<'_>> {
+    let mut all = Vec::new();
+    for (i, id) in ids.iter().enumerate() {
+        let pairs =
+            [("stills", "a", "mc"), ("stills", "b", "mc"), ("photos", "c", "photo"), ("easy", "d", "mc")];
+        for (bit, (block_id, pair_id, other)) in pairs.into_iter().enumerate() {
+            let chosen_condition = if i >> bit & 1 == 1 { "pa" } else { other };
+            let answer = Answer { session_id: id, block_id, pair_id, chosen_condition };
+            all.push(Observation { answer, chose_left: bit == 0, rt_ms: 100.0 * (i + 1) as f64 });
+        }
+    }
+    all
+}
+
+#[test]
+fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
+    let ids = ids();
+    let report = Report::of(&study(), &observations(&ids));
+    assert_eq!(report.blocks.iter().map(|b| b.summary.id.as_str()).collect::<Vec<_>>(), ["stills", "photos"]);
+    let stills = &report.blocks[0];
+    // Sixteen participants over all combinations: 4, 8 and 4 choose the target 0, 1 and 2 times; the mean is the null's.
+    assert_eq!(stills.summary.counts, [(0, 4), (1, 8), (2, 4)].into());
+    assert_eq!((stills.summary.t, stills.summary.p), (Some(0.0), Some(1.0)));
+    assert_eq!(stills.p_holm, Some(1.0));
+    assert_eq!(stills.analysis.intraclass.as_ref().unwrap().icc, 0.0);
+    assert!((stills.analysis.proportion.as_ref().unwrap().proportion - 0.5).abs() < 1e-15);
+    assert_eq!(stills.by_pair.iter().map(|p| p.target.as_ref().unwrap().chosen).collect::<Vec<_>>(), [8, 8]);
+    assert_eq!(stills.left.as_ref().unwrap().chosen, 16);
+    // Each participant has two equal times: quartiles of 100, 100, 200, 200, …, 1600 by R's quantile(type = 7).
+    assert_eq!(stills.rt_ms, Some(Quartiles { n: 32, q1: 475.0, median: 850.0, q3: 1225.0 }));
+    let scale = report.scale.unwrap();
+    assert_eq!(scale.scale.conditions, ["mc", "pa", "photo"]);
+    assert!(scale.scale.jod.iter().all(|x| x.abs() < 1e-9), "nobody was preferred");
+    assert_eq!(report.methods.len(), 6);
+}
+
+#[test]
+fn an_empty_study_gives_a_report_that_says_so() {
+    let report = Report::of(&study(), &[]);
+    for block in &report.blocks {
+        assert!(block.summary.note.is_some() && block.p_holm.is_none() && block.left.is_none());
+        assert!(block.analysis.effect.is_none() && block.analysis.proportion.is_none());
+        assert!(!block.analysis.notes.is_empty());
+    }
+    assert!(report.scale.is_none() && report.scale_note.is_some());
+    // JSON has no NaN: what is not defined is null.
+    assert!(serde_json::to_string(&report).unwrap().contains("\"t\":null"));
+}
+
+#[test]
+fn degenerate_answers_are_notes_and_no_panic() {
+    let ids = ids();
+    for (people, choice) in [(1, "pa"), (2, "pa"), (16, "pa"), (16, "mc")] {
+        let all: Vec<_> = observations(&ids[..people])
+            .into_iter()
+            .map(|mut o| {
+                o.answer.chosen_condition = if o.answer.block_id == "photos" { "photo" } else { choice };
+                o
+            })
+            .collect();
+        let report = Report::of(&study(), &all);
+        assert!(
+            report.blocks.iter().all(|b| b.summary.t.is_none() && !b.analysis.notes.is_empty()),
+            "{people} {choice}"
+        );
+    }
+}
