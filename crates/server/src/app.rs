@@ -4,11 +4,11 @@ use crate::error::ApiError;
 use crate::library::Library;
 use crate::limiter::Limiter;
 use crate::making::{Maker, Making, StimulusMap};
-use kelir_store::Store;
+use kelir_store::{Answers, Store, StoreError};
 use kelir_study::StudyDefinition;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, PoisonError, RwLock};
-use tokio::sync::Semaphore;
+use tokio::sync::{MutexGuard, Semaphore};
 
 pub(crate) struct App {
     pub(crate) store: Store,
@@ -30,6 +30,8 @@ pub(crate) struct LoadedStudy {
     pub(crate) study: Arc<StudyDefinition>,
     pub(crate) config_hash: String,
     pub(crate) stimuli: RwLock<Stimuli>,
+    /// The answers as last read: what has come since is all that a result has to read.
+    answers: tokio::sync::Mutex<Answers>,
 }
 
 /// How far a study's stimuli are.
@@ -52,6 +54,7 @@ impl App {
             config_hash: study.config_hash(),
             study: Arc::new(study),
             stimuli: RwLock::new(Stimuli::Preparing(None)),
+            answers: tokio::sync::Mutex::default(),
         };
         App {
             store,
@@ -96,6 +99,13 @@ impl App {
 }
 
 impl LoadedStudy {
+    /// Every answer there is now.
+    pub(crate) async fn answers(&self, store: &Store) -> Result<MutexGuard<'_, Answers>, StoreError> {
+        let mut answers = self.answers.lock().await;
+        store.read_on(&mut answers, &self.study.id, &self.config_hash).await?;
+        Ok(answers)
+    }
+
     pub(crate) fn stimuli(&self) -> Stimuli {
         self.stimuli.read().unwrap_or_else(PoisonError::into_inner).clone()
     }

@@ -1,13 +1,13 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
 use crate::export::write_row;
-use kelir_store::{AnswerRow, ChainReport, Participants, Store, StoreError, StudyStimulus};
+use kelir_store::{AnswerRow, Answers, ChainReport, Participants, Store, StoreError, StudyStimulus};
 use kelir_study::analysis::{Answer, BlockSummary, summarise};
 use kelir_study::report::{BlockReport, Observation, Report};
 use kelir_study::screening::{Exclusion, Seen, screen};
 use kelir_study::{Screening, StudyDefinition};
 use serde::Serialize;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -89,10 +89,25 @@ pub struct OtherVersion {
 /// # Errors
 /// The store cannot be read.
 pub async fn results(store: &Store, study: &StudyDefinition) -> Result<StudyResults, StoreError> {
+    results_of(store, study, &read(store, study).await?).await
+}
+
+async fn read(store: &Store, study: &StudyDefinition) -> Result<Answers, StoreError> {
+    let mut answers = Answers::default();
+    store.read_on(&mut answers, &study.id, &study.config_hash()).await?;
+    Ok(answers)
+}
+
+/// The same from answers that have been read.
+pub(crate) async fn results_of(
+    store: &Store,
+    study: &StudyDefinition,
+    answers: &Answers,
+) -> Result<StudyResults, StoreError> {
     let config_hash = study.config_hash();
     let idle = Duration::from_secs(60 * u64::from(study.idle_minutes));
-    let answers = store.answers(&study.id, &config_hash).await?;
-    let excluded = exclusions(study, &answers);
+    let answers = answers.rows();
+    let excluded = exclusions(study, answers);
     let left_out: HashSet<&str> = excluded.iter().map(|e| e.session_id.as_str()).collect();
     let blocks = summarise(study, answers.iter().map(answer).filter(|a| !left_out.contains(a.session_id)));
     let everybody = (!excluded.is_empty()).then(|| summarise(study, answers.iter().map(answer)));
@@ -114,10 +129,19 @@ pub async fn results(store: &Store, study: &StudyDefinition) -> Result<StudyResu
 /// # Errors
 /// The store cannot be read.
 pub async fn report(store: &Store, study: &StudyDefinition) -> Result<StudyReport, StoreError> {
+    report_of(store, study, &read(store, study).await?).await
+}
+
+/// The same from answers that have been read.
+pub(crate) async fn report_of(
+    store: &Store,
+    study: &StudyDefinition,
+    answers: &Answers,
+) -> Result<StudyReport, StoreError> {
     let config_hash = study.config_hash();
     let idle = Duration::from_secs(60 * u64::from(study.idle_minutes));
-    let answers = store.answers(&study.id, &config_hash).await?;
-    let excluded = exclusions(study, &answers);
+    let answers = answers.rows();
+    let excluded = exclusions(study, answers);
     let left_out = names(&excluded);
     let everybody: Vec<Observation<'_>> = answers.iter().map(observation).collect();
     let judged: Vec<Observation<'_>> =
@@ -149,8 +173,9 @@ pub async fn report(store: &Store, study: &StudyDefinition) -> Result<StudyRepor
 /// The store cannot be read.
 pub async fn pairs_csv(store: &Store, study: &StudyDefinition) -> Result<String, StoreError> {
     let config_hash = study.config_hash();
-    let answers = store.answers(&study.id, &config_hash).await?;
-    let excluded = exclusions(study, &answers);
+    let answers = read(store, study).await?;
+    let answers = answers.rows();
+    let excluded = exclusions(study, answers);
     let left_out = names(&excluded);
     let sessions = store.sessions(&study.id, &config_hash).await?;
     let observers: HashMap<&str, &str> =
@@ -159,10 +184,10 @@ pub async fn pairs_csv(store: &Store, study: &StudyDefinition) -> Result<String,
     let header =
         ["observer", "session", "scene", "condition_A", "condition_B", "is_A_selected", "left_condition"];
     write_row(&mut out, header.map(str::to_owned));
-    for row in answers.iter().filter(|row| !left_out.contains(row.session_id.as_str())) {
+    for row in answers.iter().filter(|row| !left_out.contains(&*row.session_id)) {
         let Some(block) = study.block(&row.block_id).filter(|block| !block.catch) else { continue };
         let [a, b] = &block.conditions;
-        let observer = observers.get(row.session_id.as_str()).copied().unwrap_or_default();
+        let observer = observers.get(&*row.session_id).copied().unwrap_or_default();
         let selected = u8::from(row.chosen_condition() == a).to_string();
         let cells = [observer, &row.session_id, &row.pair_id, a, b, &selected, &row.left_condition];
         write_row(&mut out, cells.map(str::to_owned));
@@ -197,19 +222,23 @@ fn answer(row: &AnswerRow) -> Answer<'_> {
     }
 }
 
-/// Who is left out; `answers` as the store gives them, those of a session together. Sessions without any answer are not among them.
-fn exclusions<'a>(study: &StudyDefinition, answers: &'a [AnswerRow]) -> Vec<Excluded> {
-    let sessions = answers.chunk_by(|a, b| a.session_id == b.session_id);
-    let judged = sessions.map(|rows| {
-        let seen = |row: &'a AnswerRow| Seen {
+/// Who is left out, in the order they began. Sessions without any answer are not among them.
+fn exclusions(study: &StudyDefinition, answers: &[AnswerRow]) -> Vec<Excluded> {
+    if study.screening == Screening::default() {
+        return Vec::new();
+    }
+    let mut sessions: BTreeMap<&str, Vec<Seen<'_>>> = BTreeMap::new();
+    for row in answers {
+        sessions.entry(&row.session_id).or_default().push(Seen {
             block_id: &row.block_id,
             chosen_condition: row.chosen_condition(),
             chose_left: row.chose_left,
             rt_ms: row.rt_ms,
-        };
-        let seen: Vec<Seen<'_>> = rows.iter().map(seen).collect();
-        Excluded { session_id: rows[0].session_id.clone(), reasons: screen(study, &seen) }
-    });
+        });
+    }
+    let judged = sessions
+        .into_iter()
+        .map(|(id, seen)| Excluded { session_id: id.to_owned(), reasons: screen(study, &seen) });
     judged.filter(|e| !e.reasons.is_empty()).collect()
 }
 

@@ -17,7 +17,7 @@ mod studies;
 pub use chain::{ChainReport, ChainRow, GENESIS};
 pub use error::StoreError;
 pub use files::sha256_hex;
-pub use responses::{AnswerRow, Appended, NewResponse, ResponseRow};
+pub use responses::{AnswerRow, Answers, Appended, NewResponse, ResponseRow};
 pub use sessions::{Completed, NewSession, Participants, PlannedSession, PlannedTrial, Session};
 pub use sqlite::Store;
 pub use stimuli::{Render, StimulusInfo, StudyStimulus};

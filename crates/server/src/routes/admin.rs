@@ -4,7 +4,7 @@ use crate::app::{App, Stimuli};
 use crate::error::ApiError;
 use crate::export::{codebook_csv, responses_csv};
 use crate::extract::{Parameters, Researcher};
-use crate::results::{pairs_csv, report, results};
+use crate::results::{pairs_csv, report_of, results_of};
 use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -45,7 +45,8 @@ pub(crate) async fn get_results(
     Parameters(study): Parameters<String>,
 ) -> Result<Response, ApiError> {
     let loaded = app.study(&study)?;
-    Ok(super::fresh(StatusCode::OK, results(&app.store, &loaded.study).await?))
+    let answers = loaded.answers(&app.store).await?;
+    Ok(super::fresh(StatusCode::OK, results_of(&app.store, &loaded.study, &answers).await?))
 }
 
 /// The full report. It resamples participants, which keeps a core busy: one at a time.
@@ -54,12 +55,16 @@ pub(crate) async fn get_report(
     State(app): State<Arc<App>>,
     Parameters(study): Parameters<String>,
 ) -> Result<Response, ApiError> {
-    let loaded = app.study(&study)?;
+    app.study(&study)?;
     let permit = app.reporting.acquire().await.map_err(ApiError::internal)?;
-    let (task, definition) = (app.clone(), loaded.study.clone());
+    let task = app.clone();
     // On a thread of its own kind: answering participants must not wait for it.
     let judged = tokio::task::spawn_blocking(move || {
-        tokio::runtime::Handle::current().block_on(report(&task.store, &definition))
+        tokio::runtime::Handle::current().block_on(async {
+            let loaded = task.study(&study)?;
+            let answers = loaded.answers(&task.store).await?.clone();
+            report_of(&task.store, &loaded.study, &answers).await.map_err(ApiError::from)
+        })
     });
     let report = judged.await.map_err(ApiError::internal)??;
     drop(permit);

@@ -215,3 +215,28 @@ async fn every_connection_has_the_pragmas_that_durability_rests_on() {
     let (full, keys) = _store.pragmas().await.unwrap();
     assert_eq!((full, keys), (2, 1), "synchronous = FULL, foreign_keys = on");
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn reading_on_adds_what_has_come_since_and_nothing_twice() {
+    let (_folder, store) = open().await;
+    let session = begin(&store, Duration::from_secs(60)).await;
+    let (study, hash) = (session.study_id.as_str(), session.config_hash.as_str());
+    let mut answers = kelir_store::Answers::default();
+    store.read_on(&mut answers, study, hash).await.unwrap();
+    assert!(answers.rows().is_empty());
+    for trial in [2, 0, 1] {
+        store.append_response(&session, answer(trial, trial == 0, 7.5)).await.unwrap();
+        store.read_on(&mut answers, study, hash).await.unwrap();
+        store.read_on(&mut answers, study, hash).await.unwrap();
+    }
+    let read: Vec<(&str, bool)> = answers.rows().iter().map(|r| (&*r.pair_id, r.chose_left)).collect();
+    let pair = |trial: usize| session.trials[trial].trial.pair_id.as_str();
+    assert_eq!(read, [(pair(2), false), (pair(0), true), (pair(1), false)]);
+    assert_eq!(answers.rows()[1].chosen_condition(), session.trials[0].trial.left);
+    let mut whole = kelir_store::Answers::default();
+    store.read_on(&mut whole, study, hash).await.unwrap();
+    assert_eq!(whole.rows(), answers.rows());
+    let mut other = kelir_store::Answers::default();
+    store.read_on(&mut other, study, "another version").await.unwrap();
+    assert!(other.rows().is_empty());
+}
