@@ -71,6 +71,12 @@ pub(crate) async fn get_report(
     Ok(super::fresh(StatusCode::OK, report))
 }
 
+/// The paper's own three tests, computed again, to lay beside a replication's results.
+pub(crate) async fn get_paper(_: Researcher) -> Result<Response, ApiError> {
+    let paper = kelir_stats::paper::taylor_cameron().map_err(ApiError::internal)?;
+    Ok(super::fresh(StatusCode::OK, paper))
+}
+
 pub(crate) async fn get_pairs_csv(
     _: Researcher,
     State(app): State<Arc<App>>,

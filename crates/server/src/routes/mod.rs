@@ -50,6 +50,7 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/api/v1/admin/studies/{study}/pairs.csv", get(admin::get_pairs_csv))
         .route("/api/v1/admin/studies/{study}/responses.csv", get(admin::get_responses_csv))
         .route("/api/v1/admin/studies/{study}/codebook.csv", get(admin::get_codebook_csv))
+        .route("/api/v1/admin/papers/taylor-cameron", get(admin::get_paper))
         .route("/healthz", get(get_health))
         .fallback(not_found)
         .method_not_allowed_fallback(method_not_allowed)

@@ -174,6 +174,7 @@ async fn addresses_and_methods_that_there_are_not() {
         ("GET", "/api/v1/admin/studies/shadow-puppets/codebook.csv", 401),
         ("GET", "/api/v1/admin/studies/shadow-puppets/pairs.csv", 401),
         ("GET", "/api/v1/admin/studies/shadow-puppets/report", 401),
+        ("GET", "/api/v1/admin/papers/taylor-cameron", 401),
     ] {
         assert_shape(&format!("{method} {path}"), &client.call(method, path, "", &Value::Null).await, status);
     }

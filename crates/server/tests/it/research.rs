@@ -252,3 +252,15 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
         .sum();
     assert_eq!(chosen, counted);
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_papers_own_tests_can_be_laid_beside_the_results() {
+    let client = Client::unready().await;
+    let cookie = client.sign_in().await;
+    let paper = client.research(&cookie, "/api/v1/admin/papers/taylor-cameron").await.json();
+    let t: Vec<f64> =
+        paper["comparisons"].as_array().unwrap().iter().map(|c| c["test"]["t"].as_f64().unwrap()).collect();
+    for (ours, printed) in t.iter().zip([-1.437_591, 4.208_834, -3.983_482]) {
+        assert!((ours - printed).abs() < 5e-7, "{ours} is not {printed}");
+    }
+}

@@ -1,7 +1,6 @@
 //! The whole report of a study: the paper's tests, and beside them what the paper left out.
 
 mod choices;
-pub mod paper;
 
 pub use choices::{ALPHA, ChoiceAnalysis, LEVEL, POWER_EFFECTS, Proportion, REPLICATES};
 

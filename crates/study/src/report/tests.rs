@@ -110,3 +110,28 @@ fn degenerate_answers_are_notes_and_no_panic() {
         );
     }
 }
+
+#[test]
+fn the_papers_counts_are_judged_as_the_issue_says() {
+    use kelir_stats::inference::Bounds;
+    let analysis = |counts: [u64; 3]| ChoiceAnalysis::of_counts(&(0..).zip(counts).collect(), 2, 1);
+    let first = analysis([12, 14, 6]);
+    let p_of = |bounds: Bounds| first.equivalence.iter().find(|e| e.bounds == bounds).unwrap().p;
+    let effect = first.effect.unwrap();
+    let icc = |a: &ChoiceAnalysis| a.intraclass.as_ref().unwrap().icc;
+    for (ours, printed, half_a_digit) in [
+        (p_of(Bounds::Points(0.5)), 0.0114, 5e-5),
+        (p_of(Bounds::Sd(0.5)), 0.087, 5e-4),
+        (first.bayes.unwrap().bf01, 2.1, 0.05),
+        (effect.g, -0.248, 5e-4),
+        (effect.g_interval.low, -0.590, 5e-4),
+        (effect.g_interval.high, 0.098, 5e-4),
+        (icc(&first), 0.093, 5e-4),
+        (icc(&analysis([3, 10, 19])), 0.167, 5e-4),
+    ] {
+        assert!((ours - printed).abs() < half_a_digit, "{ours} is not {printed}");
+    }
+    assert!(first.notes.iter().any(|n| n.contains("not shown to be absent")), "{:?}", first.notes);
+    // Negative control: the second block's difference is significant, and nothing of the kind is said.
+    assert!(!analysis([3, 10, 19]).notes.iter().any(|n| n.contains("not shown to be absent")));
+}
