@@ -220,10 +220,12 @@ impl Store {
         config_hash: &str,
     ) -> Result<(), StoreError> {
         loop {
+            // CROSS JOIN keeps SQLite from going through all sessions first, once a page.
             let rows = sqlx::query(
                 "SELECT r.response_id, r.session_id, r.block_id, r.pair_id, r.left_condition, r.right_condition,
-                 r.choice = 'left', r.rt_ms FROM responses r JOIN sessions s USING (session_id)
-                 WHERE r.response_id > $1 AND s.study_id = $2 AND s.config_hash = $3 ORDER BY r.response_id LIMIT $4",
+                 r.choice = 'left', r.rt_ms FROM responses r CROSS JOIN sessions s
+                 WHERE s.session_id = r.session_id AND r.response_id > $1 AND s.study_id = $2 AND s.config_hash = $3
+                 ORDER BY r.response_id LIMIT $4",
             )
             .bind(answers.through)
             .bind(study_id)
