@@ -84,6 +84,11 @@ impl Scene {
         }
     }
 
+    /// Forgets the masks of poses shown before, so that the next one is drawn anew: for measuring how long that takes.
+    pub fn forget_masks(&mut self) {
+        self.puppets.iter_mut().for_each(|puppet| puppet.figure.forget());
+    }
+
     /// The scene at an instant of its timeline; as written when there is none. A puppet whose pose and rotation are as
     /// in a recent call keeps its mask (the same [`Arc`], the same [`Mask::id`]).
     pub fn theatre_at(&mut self, time_s: f64) -> Theatre {

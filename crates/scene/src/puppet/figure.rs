@@ -191,6 +191,13 @@ impl Figure {
         (extent, mask)
     }
 
+    /// Forgets the masks of a figure that moves; a figure at rest has but the one.
+    pub fn forget(&mut self) {
+        if self.textures.iter().zip(&self.moving).any(|(t, moving)| *moving && !t.opacity.is_empty()) {
+            self.kept.clear();
+        }
+    }
+
     /// The codes of a pose on the texels of `extent`, in a buffer that may be reused.
     fn draw<C: Code>(&self, extent: Rect, pose: &Pose, mut codes: Vec<C>) -> Vec<C> {
         let parts: Vec<Placed> = (0..self.textures.len())

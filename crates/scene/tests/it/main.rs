@@ -1,9 +1,11 @@
 //! The scene crate from outside: files in, theatres out.
-#![allow(clippy::unwrap_used, missing_docs)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 mod assets;
+mod cloth;
 mod fuzz;
 mod good;
 mod posed;
 mod refused;
+mod resampled;
 mod support;

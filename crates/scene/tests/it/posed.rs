@@ -253,6 +253,13 @@ fn equal_poses_share_their_mask_and_different_ones_do_not() {
     let back = scene.theatre_at(0.4).planes.remove(0).mask;
     assert!(Arc::ptr_eq(&other, &back), "a mask that was just shown is kept");
     assert_eq!(rows(&again, 0), rows(&first, 0));
+    scene.forget_masks();
+    let anew = scene.theatre_at(0.4).planes.remove(0).mask;
+    assert!(!Arc::ptr_eq(&anew, &back) && rows(&anew, 0) == rows(&back, 0), "forgotten, it is drawn anew");
+    // What never moves is not lost by forgetting.
+    let mut still = parse(&format!("{SCENE}[timeline]\nfps = 1\nseconds = 1\n"), &files()).unwrap();
+    still.forget_masks();
+    assert_eq!(still.theatre_at(0.0).planes[0].mask.id, still.still().planes[0].mask.id);
     assert!(Arc::ptr_eq(&scene.still().planes[0].mask, &scene.still().planes[0].mask));
 }
 
