@@ -23,7 +23,7 @@ pub mod techniques;
 
 pub use exposure::white;
 pub use frame::*;
-pub use techniques::{Backend, Technique, mc, oracle, pa, renderer};
+pub use techniques::{Backend, Technique, mc, oracle, pa, points, renderer};
 
 /// Why nothing was drawn.
 #[derive(Debug, thiserror::Error)]

@@ -3,6 +3,7 @@
 pub mod mc;
 pub mod oracle;
 pub mod pa;
+pub mod points;
 
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +17,8 @@ pub enum Technique {
     Pa(pa::Knobs),
     /// Monte Carlo, the ground truth with a standard error.
     Mc(mc::Knobs),
+    /// Point lights averaged.
+    Points(points::Knobs),
     /// Slow f64 sums without random numbers, for crops and tests.
     Oracle(oracle::Knobs),
 }
@@ -26,6 +29,7 @@ impl Technique {
         match self {
             Self::Pa(_) => "pa",
             Self::Mc(_) => "mc",
+            Self::Points(_) => "points",
             Self::Oracle(_) => "oracle",
         }
     }
@@ -62,6 +66,7 @@ pub fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Rende
     match technique {
         Technique::Pa(knobs) => pa::renderer(knobs, backend),
         Technique::Mc(knobs) => mc::renderer(knobs, backend),
+        Technique::Points(knobs) => points::renderer(knobs, backend),
         Technique::Oracle(knobs) => oracle::renderer(knobs),
     }
 }

@@ -206,7 +206,8 @@ impl Estimator<'_> {
         }
         let (x, y, first, end) = (i as u32, j as u32, planes.start as u32, planes.end as u32);
         let sums = source(&Job { x, y, emitter: k as u32, first, end, v0_r, v0_g, v0_b });
-        let scale = self.plan.emitters[k].scale / (self.points.samples as f64 * full);
+        let unit = if self.plan.geometric { lit } else { self.plan.emitters[k].scale };
+        let scale = unit / (self.points.samples as f64 * full);
         (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none())
     }
 

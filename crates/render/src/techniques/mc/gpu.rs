@@ -32,6 +32,7 @@ pub(super) struct Params {
     pub seed: u32,
     pub area: u32,
     pub channels: u32,
+    pub scrambled: u32,
 }
 
 #[repr(C)]
@@ -184,6 +185,7 @@ impl Sampler {
             seed: points::fold(seed),
             area: u32::from(plan.area),
             channels: plan.channels as u32,
+            scrambled: u32::from(points.scrambled),
         };
         let scene = Scene {
             plan: params,

@@ -12,6 +12,8 @@ struct Params {
     area: u32,
     // 1 or 3.
     channels: u32,
+    // 0 for lights that stand still.
+    scrambled: u32,
 }
 
 struct Job {
@@ -104,7 +106,7 @@ fn hash(word: u32) -> u32 {
 }
 
 fn shift(key: u32, dimension: u32, replicate: u32) -> u32 {
-    return hash(key + (dimension * REPLICATES + replicate) * 0x9e3779b9u);
+    return hash(key + (dimension * REPLICATES + replicate) * 0x9e3779b9u) * params.scrambled;
 }
 
 fn unit(word: u32) -> f32 {
@@ -184,7 +186,7 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     );
     let table = params.samples * REPLICATES;
     let coloured = params.channels == 3u;
-    var placed = params.area == 1u && emitter.shape == 0u && job.first < job.end;
+    var placed = params.scrambled == 1u && params.area == 1u && emitter.shape == 0u && job.first < job.end;
     if placed {
         placed = maps[job.emitter * params.planes + job.first].tilted == 0u;
     }

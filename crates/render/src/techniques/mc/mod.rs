@@ -92,11 +92,25 @@ struct Mc {
     lit: Vec<(String, Arc<Vec<f64>>)>,
     /// `None` draws on the CPU.
     gpu: Option<gpu::Sampler>,
+    /// Lights that stand still, in place of random points.
+    lattice: Option<Arc<Points>>,
+}
+
+/// The renderer of `lights` × `lights` point lights an emitter, seen from `subpixels` × `subpixels` points of an `area`
+/// pixel: the same maps, masks and bounds with points that stand still and weigh the same.
+pub(crate) fn lattice(
+    lights: usize,
+    subpixels: usize,
+    backend: Backend,
+) -> Result<Box<dyn Renderer>, RenderError> {
+    let gpu = crate::gpu::choose(backend)?.map(|gpu| gpu::Sampler::new(gpu, gpu::WGSL)).transpose()?;
+    let lattice = Some(Arc::new(Points::lattice(lights, subpixels)));
+    Ok(Box::new(Mc { lattice, ..Mc::new(Knobs::default(), gpu) }))
 }
 
 impl Mc {
     fn new(knobs: Knobs, gpu: Option<gpu::Sampler>) -> Self {
-        Self { knobs, masks: HashMap::new(), points: None, lit: Vec::new(), gpu }
+        Self { knobs, masks: HashMap::new(), points: None, lit: Vec::new(), gpu, lattice: None }
     }
 
     /// Draws all rows; `layers` asks for more than the radiance.
@@ -110,7 +124,7 @@ impl Mc {
         let started = Instant::now();
         self.prepare(theatre, view);
         let masks: Vec<_> = theatre.planes.iter().map(|p| self.masks[&p.mask.id].clone()).collect();
-        let plan = plan::Plan::new(theatre, view, &masks)?;
+        let plan = plan::Plan::new(theatre, view, &masks, self.lattice.is_some())?;
         let albedo = albedo::on_grid(&theatre.screen, view);
         let lit: Vec<&[f64]> = self.lit.iter().map(|(_, image)| image.as_slice()).collect();
         stats.steps_ms.push(("prepare".into(), started.elapsed().as_secs_f64() * 1e3));
@@ -133,17 +147,26 @@ impl Mc {
             estimator.rows_by(rows, |jobs| gpu.run(&plan, &scene, jobs))
         };
         let clock = Instant::now();
-        let samples = budget::freeze(&self.knobs, view.size[1], started, |p, rows| draw(&p, rows))?;
+        let samples = match &self.lattice {
+            Some(lattice) => lattice.samples,
+            None => budget::freeze(&self.knobs, view.size[1], started, |p, rows| draw(&p, rows))?,
+        };
         stats.steps_ms.push(("pilot".into(), clock.elapsed().as_secs_f64() * 1e3));
         let clock = Instant::now();
-        let points = match &self.points {
-            Some(points) if points.samples == samples => points.clone(),
+        let points = match (&self.lattice, &self.points) {
+            (Some(lattice), _) => lattice.clone(),
+            (_, Some(points)) if points.samples == samples => points.clone(),
             _ => Arc::new(Points::new(self.knobs.seed, samples)),
         };
         let rows = draw(&points, &(0..view.size[1]).collect::<Vec<_>>())?;
         self.points = Some(points);
         stats.steps_ms.push(("sample".into(), clock.elapsed().as_secs_f64() * 1e3));
         count(&rows, samples, plan.emitters.len(), view, &mut stats);
+        if self.lattice.is_some() {
+            // What the lanes of a lattice differ by is no error.
+            stats.values.clear();
+            stats.counts.remove("replicates");
+        }
         Ok((rows, stats))
     }
 
@@ -178,10 +201,11 @@ impl Renderer for Mc {
         let n = view.size[0] * view.size[1];
         let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
         let mut names: Vec<String> = ["SE.R", "SE.G", "SE.B"].map(String::from).to_vec();
+        let kind = if self.lattice.is_some() { "Vgeo" } else { "Virr" };
         for (name, _) in sources(theatre) {
             match coloured {
-                true => names.extend(["R", "G", "B"].map(|c| format!("Virr.{name}.{c}"))),
-                false => names.push(format!("Virr.{name}")),
+                true => names.extend(["R", "G", "B"].map(|c| format!("{kind}.{name}.{c}"))),
+                false => names.push(format!("{kind}.{name}")),
             }
         }
         let mut planes: Vec<Vec<f32>> = (0..3 + names.len()).map(|_| Vec::with_capacity(n)).collect();
@@ -192,7 +216,8 @@ impl Renderer for Mc {
         }
         let mut planes = planes.into_iter();
         let radiance = [(); 3].map(|()| planes.next().expect("three planes of radiance"));
-        let layers = names.into_iter().zip(planes).map(|(name, values)| Layer { name, values }).collect();
+        let layers = names.into_iter().zip(planes).map(|(name, values)| Layer { name, values });
+        let layers = layers.filter(|l| self.lattice.is_none() || !l.name.starts_with("SE.")).collect();
         Ok(Frame { size: view.size, radiance, layers, stats })
     }
 

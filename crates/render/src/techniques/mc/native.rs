@@ -70,7 +70,7 @@ impl Sampler<'_> {
         let mut shifts = [[0; REPLICATES]; points::DIMENSIONS];
         for (d, shifts) in shifts.iter_mut().enumerate() {
             for (r, shift) in shifts.iter_mut().enumerate() {
-                *shift = points::shift(key, d, r);
+                *shift = if self.points.scrambled { points::shift(key, d, r) } else { 0 };
             }
         }
         let dims = self.points.dims.each_ref().map(|d| &d.as_chunks::<REPLICATES>().0[..self.points.samples]);
@@ -83,7 +83,9 @@ impl Sampler<'_> {
             })
             .collect();
         let windows = match planes.first() {
-            Some(PlaneMap::Parallel(map)) if AREA && emitter.shape == Shape::Rectangle => {
+            Some(PlaneMap::Parallel(map))
+                if AREA && emitter.shape == Shape::Rectangle && self.points.scrambled =>
+            {
                 Some([0, 1].map(|d| Window::new(map.emitter[d], map.pixel[d])))
             }
             _ => None,

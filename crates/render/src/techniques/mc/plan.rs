@@ -88,18 +88,34 @@ pub struct Plan {
     pub channels: usize,
     /// One an emitter, then the dome where there is one.
     pub emitters: Vec<EmitterPlan>,
+    /// All points of an emitter weigh the same: E is E⁰ times their mean visibility.
+    pub geometric: bool,
 }
 
 impl Plan {
     /// Errors: a size that does not fit the screen.
-    pub fn new(theatre: &Theatre, view: &View, masks: &[impl AsRef<Padded>]) -> Result<Self, RenderError> {
+    pub fn new(
+        theatre: &Theatre,
+        view: &View,
+        masks: &[impl AsRef<Padded>],
+        geometric: bool,
+    ) -> Result<Self, RenderError> {
         crate::pa::check_view(theatre, view)?;
         let mut emitters: Vec<_> =
             theatre.lamp.emitters.iter().map(|emitter| lamp(theatre, view, &emitter.shape)).collect();
         if let Ambient::Dome { .. } = theatre.ambient {
             emitters.push(dome(theatre, view));
         }
+        if geometric {
+            for e in &mut emitters {
+                // Tangents of zero make every weight 1.
+                e.columns.fill(0.0);
+                e.rows.fill(0.0);
+                (e.emitter, e.pixel) = ([0.0; 2], [0.0; 2]);
+            }
+        }
         Ok(Self {
+            geometric,
             size: view.size,
             area: view.pixel == Pixel::Area,
             channels: masks.iter().map(|m| m.as_ref().channels).max().unwrap_or(1),

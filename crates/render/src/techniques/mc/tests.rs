@@ -205,7 +205,7 @@ fn vector_width_does_not_matter() {
     let theatre = theatre(edge(3), Ambient::None);
     let view = view(Pixel::Area);
     let masks = [Arc::new(Padded::new(&theatre.planes[0].mask))];
-    let plan = plan::Plan::new(&theatre, &view, &masks).unwrap();
+    let plan = plan::Plan::new(&theatre, &view, &masks, false).unwrap();
     let points = Points::new(1, 37);
     let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..1 };
     for i in 20..28 {
@@ -316,7 +316,7 @@ fn structs_are_laid_out_as_the_shader_expects() {
     same_layout!(
         gpu::WGSL,
         "Params",
-        gpu::Params { width, height, samples, jobs, planes, seed, area, channels }
+        gpu::Params { width, height, samples, jobs, planes, seed, area, channels, scrambled }
     );
     same_layout!(gpu::WGSL, "Job", estimate::Job { x, y, emitter, first, end, v0_r, v0_g, v0_b });
     same_layout!(gpu::WGSL, "Axis", gpu::GpuAxis { offset, low, high, anchor });
@@ -360,7 +360,7 @@ fn tail(t: f64) -> f64 {
 /// `drawn` against the oracle's irradiance of `truth`, whose first emitter gives the same flux.
 fn agreement(truth: &Theatre, drawn: &Theatre, view: &View) -> f64 {
     let masks = [Arc::new(Padded::new(&drawn.planes[0].mask))];
-    let plan = plan::Plan::new(drawn, view, &masks).unwrap();
+    let plan = plan::Plan::new(drawn, view, &masks, false).unwrap();
     let points = Points::new(11, 256);
     let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..1 };
     let (before, after) = (&truth.lamp.emitters[0].shape, &drawn.lamp.emitters[0].shape);
