@@ -42,7 +42,9 @@ impl<'a> Source<'a> {
 
     /// Collects a problem.
     pub fn problem(&self, field: impl Into<String>, value: Option<String>, rule: impl Into<String>) {
-        let problem = Problem { file: self.name.to_owned(), field: field.into(), value, rule: rule.into() };
+        // A decoder's message may quote the file: no line break or control character gets through.
+        let rule = rule.into().replace(char::is_control, " ");
+        let problem = Problem { file: self.name.to_owned(), field: field.into(), value, rule };
         self.problems.borrow_mut().push(problem);
     }
 }
