@@ -8,6 +8,8 @@
 //! | [`inference`] | tests, intervals, effect sizes, equivalence, Bayes factor, corrections, power |
 //! | [`clustered`] | choices of participants × pairs: intraclass correlation, bootstrap, robust and mixed logit |
 //! | [`pairwise`] | Bradley–Terry and Thurstone scaling in JOD, circular triads, odd observers |
+//! | [`psychometric`] | psychometric functions: maximum likelihood, posterior, goodness of fit |
+//! | [`simulate`] | simulated observers: power, precision, coverage |
 //! | [`random`] | the seeded generator behind every resampling |
 //! | [`paper`] | the paper's tests computed again, and what it left out |
 //! | [`numerics`] | how exact all of this is, measured |
@@ -28,6 +30,8 @@ pub mod numerics;
 mod optimise;
 pub mod pairwise;
 pub mod paper;
+pub mod psychometric;
 pub mod random;
+pub mod simulate;
 
 pub use error::{Result, StatsError};

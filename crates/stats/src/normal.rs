@@ -1,8 +1,8 @@
 //! The normal and reference distributions the fits use, for arguments already checked.
 
+use crate::distributions::gamma::ChiSquared;
 use crate::distributions::normal;
 use crate::distributions::student_t::StudentT;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 pub(crate) use normal::{inverse as quantile, ln_lower as ln_cdf, lower as cdf};
 
@@ -11,10 +11,7 @@ pub(crate) fn chi_squared_sf(x: f64, df: f64) -> f64 {
     if df == 0.0 || x <= 0.0 {
         return 1.0;
     }
-    if df == 1.0 {
-        return 2.0 * cdf(-x.sqrt());
-    }
-    ChiSquared::new(df).map_or(f64::NAN, |d| d.sf(x))
+    ChiSquared::new(df).and_then(|d| d.sf(x)).unwrap_or(f64::NAN)
 }
 
 /// The p-quantile of Student's t, for p in [0, 1] and df ≥ 1.

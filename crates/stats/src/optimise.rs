@@ -37,18 +37,19 @@ pub(crate) fn maximise(
         return None;
     }
     for _ in 0..ITERATIONS {
-        let free: Vec<usize> = (0..p)
-            .filter(|&i| {
-                bounds.get(i).is_none_or(|&(low, high)| {
-                    low < high
-                        && !(at[i] <= low && here.gradient[i] <= 0.0)
-                        && !(at[i] >= high && here.gradient[i] >= 0.0)
-                })
-            })
-            .collect();
-        let step = newton_step(&here, &free, p);
+        let on_low = |i: usize| bounds.get(i).is_some_and(|b| at[i] <= b.0);
+        let on_high = |i: usize| bounds.get(i).is_some_and(|b| at[i] >= b.1);
+        let pushes_out = |i: usize, d: f64| (on_low(i) && d <= 0.0) || (on_high(i) && d >= 0.0);
+        let frozen = |i: usize| bounds.get(i).is_some_and(|b| b.0 >= b.1);
+        let free: Vec<usize> = (0..p).filter(|&i| !frozen(i) && !pushes_out(i, here.gradient[i])).collect();
+        let step = bounded_step(&here, &at, free.clone(), pushes_out);
+
+        // Where the function is flat (or rounding is all that is left) there may be no step uphill, and none is needed.
+        let slope = free.iter().map(|&i| here.gradient[i].abs() * (1.0 + at[i].abs())).fold(0.0, f64::max);
+        let flat = slope <= 1e-9 * (1.0 + here.value.abs());
+        let finished = |at, here: Local| Maximum { at, value: here.value, curvature: here.curvature };
         if !step.iter().all(|d| d.is_finite()) {
-            return None;
+            return flat.then(|| finished(at, here));
         }
         let mut scale = 1.0;
         let moved = loop {
@@ -64,19 +65,43 @@ pub(crate) fn maximise(
             }
         };
         let Some((next, there)) = moved else {
-            // No uphill step is left: the maximum to rounding, if the step itself was negligible.
-            let size = relative_step(&at, &step);
-            return (size < 1e-7).then_some(Maximum { at, value: here.value, curvature: here.curvature });
+            return (flat || relative_step(&at, &step) < 1e-7).then(|| finished(at, here));
         };
         let change: Vec<f64> = (0..p).map(|i| next[i] - at[i]).collect();
         let done = relative_step(&next, &change) <= TOLERANCE;
         at = next;
         here = there;
         if done {
-            return Some(Maximum { at, value: here.value, curvature: here.curvature });
+            return Some(finished(at, here));
         }
     }
     None
+}
+
+/// A Newton step that leaves no bound it stands on: a coordinate that it would push out waits until the others have settled, and then moves alone.
+fn bounded_step(
+    here: &Local,
+    at: &[f64],
+    mut free: Vec<usize>,
+    pushes_out: impl Fn(usize, f64) -> bool,
+) -> Vec<f64> {
+    let p = at.len();
+    let mut waiting: Vec<usize> = Vec::new();
+    loop {
+        let mut step: Vec<f64> = newton_step(here, &free, p);
+        let (out, stay): (Vec<usize>, Vec<usize>) =
+            free.iter().partition(|&&i| step[i] != 0.0 && pushes_out(i, step[i]));
+        if out.is_empty() {
+            if relative_step(at, &step) < 1e-10 {
+                for &i in &waiting {
+                    step[i] = here.gradient[i] / here.curvature[i * p + i].abs().max(f64::MIN_POSITIVE);
+                }
+            }
+            return step;
+        }
+        waiting.extend(out);
+        free = stay;
+    }
 }
 
 fn relative_step(at: &[f64], step: &[f64]) -> f64 {
@@ -137,6 +162,29 @@ mod tests {
         assert!((top.at[0] - 3.0).abs() < 1e-12 && (top.at[1] + 1.0).abs() < 1e-12);
         let cut = maximise(&[0.0, 0.0], &[(-1.0, 2.0), (0.5, 0.5)], bowl).unwrap();
         assert_eq!(vec![2.0, 0.5], cut.at);
+    }
+
+    #[test]
+    fn leaves_a_bound_that_newton_would_cross() {
+        // −(x − y)² − (x + y − 1)²/100 has its top at (½, ½). From (0, −1), on the bound x ≥ 0 and uphill inwards in x, it must get there.
+        let ridge = |x: &[f64]| {
+            let (a, b) = (x[0] - x[1], x[0] + x[1] - 1.0);
+            Local {
+                value: -a * a - 0.01 * b * b,
+                gradient: vec![-2.0 * a - 0.02 * b, 2.0 * a - 0.02 * b],
+                curvature: vec![2.02, -1.98, -1.98, 2.02],
+            }
+        };
+        let bounds = [(0.0, 10.0), (-10.0, 10.0)];
+        for start in [[0.0, -1.0], [0.0, 3.0], [5.0, 0.0]] {
+            let top = maximise(&start, &bounds, ridge).unwrap();
+            assert!((top.at[0] - 0.5).abs() < 1e-12 && (top.at[1] - 0.5).abs() < 1e-12, "{:?}", top.at);
+        }
+        let cut = maximise(&[0.0, 0.0], &[(0.6, 10.0), (-10.0, 10.0)], ridge).unwrap();
+        assert!(
+            (cut.at[0] - 0.6).abs() < 1e-15
+                && (cut.at[1] - (2.0 * 0.6 - 0.02 * (0.6 - 1.0)) / 2.02).abs() < 1e-12
+        );
     }
 
     #[test]

@@ -93,6 +93,10 @@ pub fn intraclass(clusters: &[Cluster], estimator: IccEstimator) -> Result<Intra
 
 /// (icc, mean) of the beta-binomial by maximum likelihood. θ = icc/(1 − icc).
 fn beta_binomial(clusters: &[Cluster], pooled: f64) -> Result<(f64, f64)> {
+    if let Some(many) = clusters.iter().find(|c| c.trials > 1_000_000) {
+        let rule = "must not exceed a million for the beta-binomial";
+        return Err(StatsError::Invalid { name: "clusters.trials", value: many.trials as f64, rule });
+    }
     if clusters.iter().all(|c| c.successes == 0 || c.successes == c.trials) {
         // Everybody is consistent: the likelihood rises to icc = 1, where each participant is one answer.
         let hits = clusters.iter().filter(|c| c.successes > 0).count();

@@ -24,7 +24,7 @@ use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
 
 /// How often each condition was chosen over each other one.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Wins {
     conditions: usize,
     /// Row-major n × n: entry (i, j) counts choices of i over j.
