@@ -7,6 +7,7 @@ mod fields;
 mod parse;
 mod problems;
 
+pub mod adaptive;
 pub mod analysis;
 pub mod plan;
 pub mod report;
