@@ -1,4 +1,4 @@
-//! The paper, replicated: Taylor & Cameron, "Real-time rendering of photo-realistic shadow puppets". Its three t-tests
+//! The paper, replicated: Taylor & Cameron, "Rendering Virtual Shadow Puppet Theatres". Its three t-tests
 //! from the counts that its printed summaries imply, what they leave out, and a printed t that no data give.
 
 use serde::Serialize;

@@ -3,6 +3,7 @@
 pub mod animate;
 pub mod bench;
 mod drawing;
+pub mod paper;
 pub mod render;
 pub mod scene;
 pub mod serve;
