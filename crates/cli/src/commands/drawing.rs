@@ -35,6 +35,15 @@ pub struct Drawing {
     /// How the pieces of a split emitter weigh (pa): area tends to the geometric visibility, irradiance to what a meter reads.
     #[arg(long, value_enum, default_value = "area")]
     pub weights: WeightsName,
+    /// Strips that a disk is cut into (pa).
+    #[arg(long, default_value_t = pa::Knobs::default().strips)]
+    pub strips: u32,
+    /// Tables of the puppets themselves, or of a shadow map drawn from the lamp, as in the paper (pa).
+    #[arg(long, value_enum, default_value = "exact")]
+    pub variant: VariantName,
+    /// Samples a side of that shadow map (pa).
+    #[arg(long, value_name = "N", default_value_t = pa::Knobs::default().map_size)]
+    pub map_size: u32,
     /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 1920 wide.
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[usize; 2]>,
@@ -70,6 +79,15 @@ pub enum TechniqueName {
     Oracle,
 }
 
+/// Names of PA's variants on the command line.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum VariantName {
+    /// Exact boxes.
+    Exact,
+    /// The paper's pipeline.
+    ShadowMap,
+}
+
 /// Names of the weightings on the command line.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum WeightsName {
@@ -98,6 +116,12 @@ impl Drawing {
                     WeightsName::Area => pa::Weights::Area,
                     WeightsName::Irradiance => pa::Weights::Irradiance,
                 },
+                strips: self.strips,
+                variant: match self.variant {
+                    VariantName::Exact => pa::Variant::Exact,
+                    VariantName::ShadowMap => pa::Variant::ShadowMap,
+                },
+                map_size: self.map_size,
             }),
             TechniqueName::Mc => Technique::Mc(mc::Knobs {
                 spp: self.spp,
