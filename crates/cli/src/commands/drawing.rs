@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
-use kelir_render::{Backend, Pixel, RenderError, Technique, View, mc, oracle, pa};
+use kelir_render::{Backend, Pixel, RenderError, Technique, View, mc, oracle, pa, points};
 use kelir_scene::{Scene, Theatre};
 
 use crate::bad_input;
@@ -14,7 +14,7 @@ use crate::bad_input;
 pub struct Drawing {
     /// Scene file (TOML).
     pub scene: PathBuf,
-    /// What draws: pa (summed-area tables), mc (Monte Carlo, the ground truth), oracle (slow f64 sums).
+    /// What draws: pa (summed-area tables), mc (Monte Carlo, the ground truth), points (point lights), oracle (slow f64 sums).
     #[arg(long, value_enum)]
     pub technique: TechniqueName,
     /// Samples a pixel (mc), rounded up to a multiple of 16 replicates.
@@ -38,6 +38,9 @@ pub struct Drawing {
     /// Strips that a disk is cut into (pa).
     #[arg(long, default_value_t = pa::Knobs::default().strips)]
     pub strips: u32,
+    /// Point lights that stand for each emitter, a square number (points).
+    #[arg(long, value_name = "N", default_value_t = points::Knobs::default().lights)]
+    pub lights: u32,
     /// Tables of the puppets themselves, or of a shadow map drawn from the lamp, as in the paper (pa).
     #[arg(long, value_enum, default_value = "exact")]
     pub variant: VariantName,
@@ -75,6 +78,8 @@ pub enum TechniqueName {
     Pa,
     /// Monte Carlo.
     Mc,
+    /// Point lights averaged.
+    Points,
     /// f64 sums.
     Oracle,
 }
@@ -129,6 +134,9 @@ impl Drawing {
                 target_error: self.target_error,
                 time_limit_s: self.time_limit,
             }),
+            TechniqueName::Points => {
+                Technique::Points(points::Knobs { lights: self.lights, ..points::Knobs::default() })
+            }
             TechniqueName::Oracle => Technique::Oracle(oracle::Knobs::default()),
         }
     }
