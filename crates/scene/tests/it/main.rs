@@ -8,4 +8,5 @@ mod good;
 mod posed;
 mod refused;
 mod resampled;
+mod shipped;
 mod support;
