@@ -57,6 +57,9 @@ pub fn bad_input(error: impl std::fmt::Display) -> anyhow::Error {
 }
 
 fn main() -> ExitCode {
+    // Mesa's device-select layer looks for a display and complains on stderr; kelir orders the adapters itself.
+    // SAFETY: no other thread runs yet.
+    unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     let done = match Cli::parse().command {
         Command::Serve(args) => commands::serve::run(args),
         Command::Render(args) => commands::render::run(args),
