@@ -48,7 +48,7 @@ fn comparison(c: &Comparison) -> String {
     format!(
         "{}\n  printed          mean {}, sd {}, t {}\n  \
          counts           {} (tables that round to the printed mean and sd: {})\n  \
-         t-test           mean {:.4}, sd {:.4}, t = {:.6} ({agrees}), df = {}, p = {:.6e}; Holm-corrected p = {:.4e}\n  \
+         t-test           mean {:.4}, sd {:.4}, t = {:.6} ({agrees}), df = {}, p = {:.5e}; Holm-corrected p = {:.4e}\n  \
          effect           d = {:.3} [{:.3}, {:.3}], g = {:.3} [{:.3}, {:.3}]\n  \
          equivalence      p = {:.4} within ±{:.3} points, p = {:.4} within ±½ sd ({:.3})\n  \
          Bayes factor     BF01 = {:.3}, BF10 = {:.3} (JZS, r = {:.3})\n  \
