@@ -1,5 +1,6 @@
 //! What a study is, once its file has been read and found right.
 
+use kelir_stats::psychometric::{Lapse, Sigmoid};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -100,7 +101,51 @@ pub struct Block {
     /// Whether the target is the right answer that attention alone is needed for; such a block screens and is not analysed.
     #[serde(default, skip_serializing_if = "is_default")]
     pub catch: bool,
+    /// The curve that is fitted to the shares of target choices over the pairs' levels.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub psychometric: Option<Psychometric>,
 }
+
+/// A psychometric function of a block: how the share of target choices depends on the pairs' level. With two pictures to choose from,
+/// the guess rate is ½.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Psychometric {
+    /// Its shape.
+    pub function: Sigmoid,
+    /// Whether the share of target choices grows or falls with the level.
+    pub direction: Direction,
+    /// What the level is, such as `triangles`.
+    pub label: String,
+    /// Its unit, such as `log10` or `mm`; absent: none.
+    pub unit: Option<String>,
+    /// What is known of the lapse rate.
+    pub lapse: Lapse,
+    /// Shares of target choices, between ½ and 1, whose levels are wanted.
+    pub thresholds: Vec<f64>,
+}
+
+/// Which way a psychometric function runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Direction {
+    /// From guessing at low levels up.
+    Rising,
+    /// Down to guessing at high levels.
+    Falling,
+}
+
+impl Direction {
+    /// +1 or −1: levels times this rise with the share of target choices.
+    pub fn sign(self) -> f64 {
+        match self {
+            Direction::Rising => 1.0,
+            Direction::Falling => -1.0,
+        }
+    }
+}
+
+/// The guess rate of every block: two pictures, one of which is chosen.
+pub const GUESS: f64 = 0.5;
 
 /// What is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -119,6 +164,9 @@ pub struct Pair {
     pub id: String,
     /// Scene file relative to the study file; absent only where both conditions are picture files.
     pub scene: Option<String>,
+    /// Where the pair lies on the axis of the block's psychometric function.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub level: Option<f64>,
 }
 
 /// Whose answers are set aside, decided before there are any.

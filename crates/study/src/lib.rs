@@ -13,6 +13,9 @@ pub mod plan;
 pub mod report;
 pub mod screening;
 
-pub use definition::{Block, Completion, Condition, Kind, Pair, Screening, StudyDefinition, Texts};
+pub use definition::{
+    Block, Completion, Condition, Direction, GUESS, Kind, Pair, Psychometric, Screening, StudyDefinition,
+    Texts,
+};
 pub use plan::{Trial, TrialPlan};
 pub use problems::{Problem, StudyErrors};

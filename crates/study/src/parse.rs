@@ -1,5 +1,7 @@
 //! From a study file's text to a [`StudyDefinition`], or to every problem it has.
 
+mod psychometric;
+
 use crate::definition::{Block, Completion, Condition, Kind, Pair, Screening, StudyDefinition, Texts};
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
 use crate::problems::{Problem, StudyErrors};
@@ -197,14 +199,16 @@ fn read_blocks(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Vec<Block> {
                 fields.get("scene", "a scene file relative to the study file, ending in .toml", |v| {
                     text(v, 400).filter(|s| relative(s) && s.ends_with(".toml"))
                 });
+            let level = fields.get("level", "a finite number within ±1e12", |v| number(v, -1e12, 1e12));
             fields.finish();
-            pairs.extend(id.map(|id| Pair { id, scene }));
+            pairs.extend(id.map(|id| Pair { id, scene, level }));
         }
+        let psychometric = psychometric::read(gatherer, &mut fields, &pairs, catch);
         fields.finish();
         if let (Some(id), Some(title), Some(kind), Some(conditions), Some(target)) =
             (id, title, kind, conditions, target)
         {
-            blocks.push(Block { id, title, kind, conditions, target, pairs, catch });
+            blocks.push(Block { id, title, kind, conditions, target, pairs, catch, psychometric });
         }
     }
     let trials: usize = blocks.iter().map(|b| b.pairs.len()).sum();

@@ -1,6 +1,8 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::definition::Direction;
+use kelir_stats::psychometric::{Lapse, Sigmoid};
 
 const GOOD: &str = r#"
 title = "Two blocks"
@@ -149,4 +151,67 @@ fn a_studys_hash_never_changes_with_kelir() {
     // Data are found by this hash: a new optional key must leave it as it was.
     let study = StudyDefinition::parse("two.toml", GOOD).unwrap();
     assert_eq!(study.config_hash(), "718a7d0d3d8e40a5dfff3fce11489583c603083b0f1668f3707ecabbab92e14b");
+}
+
+/// The good file with a level on each pair of its first block, and the function that needs them.
+fn with_levels() -> String {
+    GOOD.replace("{ id = \"a\",", "{ id = \"a\", level = 1,").replace(
+        "{ id = \"b\", scene = \"../scenes/b.toml\" }]",
+        "{ id = \"b\", scene = \"../scenes/b.toml\", level = 2.5 },\n\
+         { id = \"c\", scene = \"../scenes/b.toml\", level = 4 }]\n[blocks.psychometric]\nfunction = \"weibull\"\n\
+         direction = \"falling\"\nlabel = \"triangles\"\nunit = \"log10\"\nlapse = 0.02\nthresholds = [0.75, 0.9]",
+    )
+}
+
+#[test]
+fn levels_and_their_function_are_read_and_count_towards_the_hash() {
+    let study = StudyDefinition::parse("two.toml", &with_levels()).unwrap();
+    let block = &study.blocks[0];
+    assert_eq!(block.pairs.iter().map(|p| p.level).collect::<Vec<_>>(), [Some(1.0), Some(2.5), Some(4.0)]);
+    let function = block.psychometric.as_ref().unwrap();
+    assert_eq!((function.function, function.direction), (Sigmoid::Weibull, Direction::Falling));
+    assert_eq!((function.label.as_str(), function.unit.as_deref()), ("triangles", Some("log10")));
+    assert_eq!(
+        (function.lapse, function.thresholds.as_slice()),
+        (Lapse::Fixed(0.02), [0.75, 0.9].as_slice())
+    );
+    let back: StudyDefinition = serde_json::from_str(&study.canonical_json()).unwrap();
+    assert_eq!(back, study);
+    let moved = StudyDefinition::parse("two.toml", &with_levels().replace("level = 4", "level = 5")).unwrap();
+    assert_ne!(moved.config_hash(), study.config_hash());
+}
+
+#[test]
+fn each_rule_of_levels_refuses_its_breach() {
+    let cases = [
+        ("level = 2.5", "level = nan", "blocks[0].pairs[1].level"),
+        ("level = 2.5", "level = \"much\"", "blocks[0].pairs[1].level"),
+        (", level = 2.5", "", "blocks[0].pairs[1].level: missing"),
+        ("level = 2.5", "level = 1.0", "blocks[0].pairs: must have at least three different levels"),
+        ("function = \"weibull\"", "function = \"line\"", "blocks[0].psychometric.function"),
+        ("function = \"weibull\"", "", "blocks[0].psychometric.function: missing"),
+        ("\"falling\"", "\"down\"", "blocks[0].psychometric.direction"),
+        ("label = \"triangles\"", "", "blocks[0].psychometric.label: missing"),
+        ("unit = \"log10\"", "unit = 3", "blocks[0].psychometric.unit"),
+        ("lapse = 0.02", "lapse = 0.5", "blocks[0].psychometric.lapse"),
+        ("lapse = 0.02", "lapse = \"some\"", "blocks[0].psychometric.lapse"),
+        ("[0.75, 0.9]", "[0.5]", "blocks[0].psychometric.thresholds"),
+        ("[0.75, 0.9]", "[]", "blocks[0].psychometric.thresholds"),
+        ("lapse = 0.02", "lapse = 0.02\nguess = 0.5", "blocks[0].psychometric.guess"),
+        (
+            "[blocks.psychometric]",
+            "catch = true\n[blocks.psychometric]",
+            "blocks[0].psychometric: a catch block",
+        ),
+        ("[blocks.psychometric]", "psychometric = 3\n[other]", "blocks[0].psychometric"),
+        ("{ id = \"fig\",", "{ id = \"fig\", level = 1,", "blocks[1].pairs[0].level = 1.0: needs"),
+    ];
+    let good = with_levels();
+    assert_eq!(problems(&good), Vec::<String>::new());
+    for (from, to, field) in cases {
+        assert!(good.contains(from), "{from}");
+        let found = problems(&good.replacen(from, to, 1));
+        let named = format!("studies/two.toml: {field}");
+        assert!(found.iter().any(|p| p.starts_with(&named)), "{from} → {to}: no {field} in {found:#?}");
+    }
 }

@@ -36,8 +36,9 @@ fn study(seed: u64, pairs: &[usize]) -> StudyDefinition {
                 kind: Kind::Still,
                 conditions: ["pa".to_owned(), "mc".to_owned()],
                 target: "pa".to_owned(),
-                pairs: (0..*n).map(|p| Pair { id: format!("b{b}-p{p}"), scene: None }).collect(),
+                pairs: (0..*n).map(|p| Pair { id: format!("b{b}-p{p}"), scene: None, level: None }).collect(),
                 catch: false,
+                psychometric: None,
             })
             .collect(),
         screening: Default::default(),

@@ -1,11 +1,15 @@
 //! The whole report of a study: the paper's tests, and beside them what the paper left out.
 
 mod choices;
+mod psychometric;
 
 pub use choices::{ALPHA, ChoiceAnalysis, LEVEL, POWER_EFFECTS, Proportion, REPLICATES};
+pub use psychometric::{
+    CurvePoint, Goodness, LevelPoint, Parameter, PsychometricFit, PsychometricReport, ThresholdAt,
+};
 
 use crate::analysis::{Answer, BlockSummary, summarise};
-use crate::definition::StudyDefinition;
+use crate::definition::{GUESS, StudyDefinition};
 use kelir_stats::inference::holm;
 use kelir_stats::pairwise::{Choice, Observer, ScaleIntervals, ScaleOptions, observer_intervals};
 use serde::Serialize;
@@ -47,6 +51,8 @@ pub struct BlockReport {
     pub analysis: ChoiceAnalysis,
     /// Each pair alone, with all who answered it.
     pub by_pair: Vec<PairReport>,
+    /// How the choices depend on the pairs' level; null where the study file asks for no psychometric function.
+    pub psychometric: Option<PsychometricReport>,
     /// Choices of the left picture over all trials of the block: far from a half shows a bias of side.
     pub left: Option<Proportion>,
     /// Response times in ms; null without answers.
@@ -122,11 +128,13 @@ fn block_report(
             PairReport { id: pair.id.clone(), target: Proportion::of(chosen, trials) }
         })
         .collect();
+    let psychometric = study.block(&summary.id).and_then(|block| psychometric::of(block, seen, study.seed));
     let lefts = seen.iter().filter(|o| o.chose_left).count() as u64;
     BlockReport {
         p_holm,
         analysis,
         by_pair,
+        psychometric,
         left: Proportion::of(lefts, seen.len() as u64),
         rt_ms: Quartiles::of(seen.iter().map(|o| o.rt_ms)),
         summary,
@@ -214,6 +222,16 @@ fn methods(study: &StudyDefinition) -> Vec<String> {
             study.seed
         ),
     ];
+    if study.blocks.iter().any(|block| block.psychometric.is_some()) {
+        methods.push(format!(
+            "Psychometric functions have a guess rate of {GUESS} (two alternatives) and a lapse rate with the prior Beta(1, 10) where \
+             the study file does not fix it; threshold (halfway between guessing and lapsing) and width (from 5% to 95%) are given where \
+             the posterior under psignifit 4's priors is highest, with {:.0}% posterior intervals and beta-binomial overdispersion; the \
+             threshold also by maximum likelihood with an interval from {REPLICATES} resamples of participants; goodness of fit is the \
+             deviance against that of simulated observers.",
+            100.0 * LEVEL
+        ));
+    }
     let rules = &study.screening;
     let mut excluded = Vec::new();
     if let Some(least) = rules.min_rt_ms {

@@ -1,0 +1,276 @@
+//! A block's psychometric function: how the share of target choices depends on the pairs' level.
+
+use super::Observation;
+use super::choices::{LEVEL, Proportion, REPLICATES};
+use crate::definition::{Block, Direction, GUESS, Psychometric};
+use kelir_stats::clustered::Bootstrap;
+use kelir_stats::psychometric::{
+    Curve, GoodnessOfFit, Level, ParameterPosterior, Posterior, Scaling, Task, goodness_of_fit, posterior,
+    resampled_threshold,
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Observers simulated for the goodness of fit.
+const SIMULATIONS: usize = 1000;
+/// Points of the curve that is drawn.
+const CURVE_POINTS: usize = 121;
+
+/// A block's psychometric function with its data, everything in the levels of the study file.
+#[derive(Clone, Debug, Serialize)]
+pub struct PsychometricReport {
+    /// What was asked for: shape, direction, label and unit of the level.
+    pub asked: Psychometric,
+    /// Guess rate, given by the task: ½ with two pictures.
+    pub guess: f64,
+    /// Target choices at each level, levels rising.
+    pub points: Vec<LevelPoint>,
+    /// The fitted curve; null where there are too few answers.
+    pub fit: Option<PsychometricFit>,
+    /// Why there is no curve, or what a reader must not conclude from it.
+    pub notes: Vec<String>,
+}
+
+/// The choices at one level.
+#[derive(Clone, Debug, Serialize)]
+pub struct LevelPoint {
+    /// The level.
+    pub level: f64,
+    /// Share of target choices with Wilson's interval; null without answers.
+    pub target: Option<Proportion>,
+}
+
+/// A fitted psychometric function.
+#[derive(Clone, Debug, Serialize)]
+pub struct PsychometricFit {
+    /// Level at which the curve is halfway between guessing and lapsing (F = ½, unscaled), where the posterior is highest.
+    pub threshold: Parameter,
+    /// From F = .05 to F = .95, in levels.
+    pub width: Parameter,
+    /// Lapse rate.
+    pub lapse: Parameter,
+    /// Overdispersion η: η² is the correlation of two answers at one level; 0 is binomial.
+    pub eta: Parameter,
+    /// The threshold by maximum likelihood, with an interval from resampled participants; null with fewer than two.
+    pub threshold_by_participant: Option<Bootstrap>,
+    /// Levels at the shares asked for.
+    pub at: Vec<ThresholdAt>,
+    /// Deviance of the maximum-likelihood curve without overdispersion, and how large it would be by chance.
+    pub goodness: Option<Goodness>,
+    /// Points of the curve where the posterior is highest, from a little below the lowest level to a little above the highest.
+    pub curve: Vec<CurvePoint>,
+}
+
+/// A parameter of the curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Where the posterior density is highest.
+    pub value: f64,
+    /// Lower end of the 95% posterior interval, as psignifit 4.3 reads it off its grid (half a cell from what finer grids converge to).
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Whether the data do not bound it: mass lies on the edge of the prior's range.
+    pub on_edge: bool,
+}
+
+/// The level at which the target's share reaches a given value, guesses and lapses included.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ThresholdAt {
+    /// The share of target choices.
+    pub share: f64,
+    /// Its level on the curve where the posterior is highest; null where that one never reaches it.
+    pub level: Option<f64>,
+    /// Lower end of the 95% posterior interval; null where it is beyond every level.
+    pub low: Option<f64>,
+    /// Upper end, likewise.
+    pub high: Option<f64>,
+}
+
+/// Does the curve hold the data?
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Goodness {
+    /// Twice the ln likelihood missed against a free share at each level.
+    pub deviance: f64,
+    /// Levels − parameters; null when nothing is left over.
+    pub df: Option<u64>,
+    /// P(χ² ≥ deviance): asymptotic.
+    pub p_asymptotic: Option<f64>,
+    /// Share of simulated observers with at least this deviance.
+    pub p_simulated: f64,
+    /// How many were simulated.
+    pub simulations: usize,
+}
+
+/// One point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CurvePoint {
+    /// The level.
+    pub level: f64,
+    /// The share of target choices.
+    pub share: f64,
+}
+
+/// The block's psychometric function, if its file asks for one; `seen`: answers to the block.
+pub(super) fn of(block: &Block, seen: &[&Observation<'_>], seed: u64) -> Option<PsychometricReport> {
+    let asked = block.psychometric.as_ref()?;
+    let sign = asked.direction.sign();
+    let x_of = |pair: &str| block.pairs.iter().find(|p| p.id == pair)?.level.map(|level| sign * level);
+    let mut people: BTreeMap<&str, Vec<Level>> = BTreeMap::new();
+    for observation in seen {
+        let Some(x) = x_of(observation.answer.pair_id) else { continue };
+        let correct = u64::from(observation.answer.chosen_condition == block.target);
+        people.entry(observation.answer.session_id).or_default().push(Level { x, correct, trials: 1 });
+    }
+    let people: Vec<Vec<Level>> = people.into_values().collect();
+    Some(judge(asked, block.pairs.iter().filter_map(|p| p.level), &people, seed))
+}
+
+fn judge(
+    asked: &Psychometric,
+    levels: impl Iterator<Item = f64>,
+    people: &[Vec<Level>],
+    seed: u64,
+) -> PsychometricReport {
+    let sign = asked.direction.sign();
+    let mut levels: Vec<Level> =
+        levels.map(|level| Level { x: sign * level, correct: 0, trials: 0 }).collect();
+    levels.sort_by(|a, b| a.x.total_cmp(&b.x));
+    levels.dedup_by(|a, b| a.x == b.x);
+    for answer in people.iter().flatten() {
+        if let Some(level) = levels.iter_mut().find(|l| l.x == answer.x) {
+            level.correct += answer.correct;
+            level.trials += answer.trials;
+        }
+    }
+    let mut notes = Vec::new();
+    let fit = match fit(asked, &levels, people, seed, &mut notes) {
+        Ok(fit) => Some(fit),
+        Err(error) => {
+            notes.push(format!("No psychometric function: {error}."));
+            None
+        }
+    };
+    let mut points: Vec<LevelPoint> = levels
+        .iter()
+        .map(|l| LevelPoint { level: sign * l.x, target: Proportion::of(l.correct, l.trials) })
+        .collect();
+    points.sort_by(|a, b| a.level.total_cmp(&b.level));
+    PsychometricReport { asked: asked.clone(), guess: GUESS, points, fit, notes }
+}
+
+fn fit(
+    asked: &Psychometric,
+    levels: &[Level],
+    people: &[Vec<Level>],
+    seed: u64,
+    notes: &mut Vec<String>,
+) -> Result<PsychometricFit, kelir_stats::StatsError> {
+    let task = Task { sigmoid: asked.function, guess: GUESS, lapse: asked.lapse, overdispersion: true };
+    let found = posterior(levels, &task, LEVEL, &asked.thresholds)?;
+    let plain = Task { overdispersion: false, ..task };
+    let goodness = goodness_of_fit(levels, &plain, SIMULATIONS, seed).ok().map(Goodness::of);
+    if found.threshold.on_edge || found.width.on_edge {
+        notes.push(
+            "The levels do not show the whole curve: threshold or width is not bounded by the data."
+                .to_owned(),
+        );
+    }
+    if goodness.is_some_and(|g| g.p_simulated < 0.05) {
+        notes.push("The curve misses the data by more than chance would (deviance): trust no threshold of it without a look at the plot.".to_owned());
+    }
+    if people.iter().any(|own| own.len() > 1) {
+        notes.push(
+            "The posterior takes the answers at different levels as independent, although each participant gave several: the \
+             threshold's interval from resampled participants does not."
+                .to_owned(),
+        );
+    }
+    let threshold_by_participant = resampled_threshold(people, &plain, REPLICATES, LEVEL, seed).ok();
+    Ok(PsychometricFit::of(asked, levels, &found, goodness, threshold_by_participant))
+}
+
+impl Goodness {
+    fn of(found: GoodnessOfFit) -> Goodness {
+        Goodness {
+            deviance: found.fit.deviance,
+            df: found.df,
+            p_asymptotic: found.p_asymptotic,
+            p_simulated: found.p_simulated,
+            simulations: found.simulations,
+        }
+    }
+}
+
+impl PsychometricFit {
+    /// From the fit along rising x = ±level back to levels.
+    fn of(
+        asked: &Psychometric,
+        levels: &[Level],
+        found: &Posterior,
+        goodness: Option<Goodness>,
+        by_participant: Option<Bootstrap>,
+    ) -> PsychometricFit {
+        let falling = asked.direction == Direction::Falling;
+        let map = &found.map;
+        let upright = |value: f64, p: &ParameterPosterior| Parameter {
+            value,
+            low: p.low,
+            high: p.high,
+            on_edge: p.on_edge,
+        };
+        let mut threshold = upright(map.threshold, &found.threshold);
+        let mut bootstrap = by_participant;
+        if falling {
+            threshold = Parameter {
+                value: -threshold.value,
+                low: -threshold.high,
+                high: -threshold.low,
+                ..threshold
+            };
+            bootstrap =
+                bootstrap.map(|b| Bootstrap { estimate: -b.estimate, low: -b.high, high: -b.low, ..b });
+        }
+        let at = found
+            .thresholds
+            .iter()
+            .map(|t| {
+                let level = map.threshold_at(t.proportion, Scaling::Scaled).ok();
+                let (level, low, high) = if falling {
+                    (level.map(|x| -x), t.high.map(|x| -x), t.low.map(|x| -x))
+                } else {
+                    (level, t.low, t.high)
+                };
+                ThresholdAt { share: t.proportion, level, low, high }
+            })
+            .collect();
+        PsychometricFit {
+            threshold,
+            width: upright(map.width, &found.width),
+            lapse: upright(map.lapse, &found.lapse),
+            eta: upright(map.eta, &found.eta),
+            threshold_by_participant: bootstrap,
+            at,
+            goodness,
+            curve: curve(map, levels, asked.direction.sign()),
+        }
+    }
+}
+
+/// Points of the curve over all levels and a twentieth of their range on either side, levels rising.
+fn curve(map: &Curve, levels: &[Level], sign: f64) -> Vec<CurvePoint> {
+    let xs = || levels.iter().map(|l| l.x);
+    let (low, high) = (xs().fold(f64::INFINITY, f64::min), xs().fold(f64::NEG_INFINITY, f64::max));
+    let margin = 0.05 * (high - low);
+    let step = (high - low + 2.0 * margin) / (CURVE_POINTS - 1) as f64;
+    let point = |i: usize| {
+        let x = low - margin + step * i as f64;
+        CurvePoint { level: sign * x, share: map.proportion(x) }
+    };
+    let mut points: Vec<CurvePoint> = (0..CURVE_POINTS).map(point).collect();
+    points.sort_by(|a, b| a.level.total_cmp(&b.level));
+    points
+}
+
+#[cfg(test)]
+mod tests;

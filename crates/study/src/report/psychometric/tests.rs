@@ -1,0 +1,128 @@
+#![allow(clippy::unwrap_used)]
+
+use crate::analysis::Answer;
+use crate::definition::StudyDefinition;
+use crate::report::{Observation, PsychometricReport, Report};
+use kelir_stats::random::Random;
+
+/// A block of seven or fewer levels whose psychometric function is described by `function`.
+fn study(function: &str, levels: &[f64]) -> StudyDefinition {
+    let pairs: Vec<String> = (0..)
+        .zip(levels)
+        .map(|(i, level): (u32, _)| format!("{{ id = \"p{i}\", scene = \"a.toml\", level = {level:?} }}"))
+        .collect();
+    let text = format!(
+        "title = \"t\"\nquestion = \"q\"\nseed = 5\nsize = [64, 36]\nestimated_minutes = 1\n\
+         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
+         conditions = {{ full = {{ technique = \"pa\" }}, few = {{ technique = \"mc\" }} }}\n\
+         [[blocks]]\nid = \"levels\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"full\", \"few\"]\n\
+         target = \"full\"\npairs = [{}]\n[blocks.psychometric]\n{function}\n",
+        pairs.join(", ")
+    );
+    StudyDefinition::parse("levels.toml", &text).unwrap()
+}
+
+const FALLING: &str = "function = \"gaussian\"\ndirection = \"falling\"\nlabel = \"triangles\"\nunit = \"log10\"\nthresholds = [0.75, 0.9]";
+
+/// Participant i chooses the target at level k when `target(i, k)`.
+fn report(
+    study: &StudyDefinition,
+    participants: usize,
+    mut target: impl FnMut(usize, usize) -> bool,
+) -> PsychometricReport {
+    let ids: Vec<String> = (0..participants).map(|i| format!("s{i:04}")).collect();
+    let block = &study.blocks[0];
+    let mut seen = Vec::new();
+    for (i, session_id) in ids.iter().enumerate() {
+        for (k, pair) in block.pairs.iter().enumerate() {
+            let chosen_condition = if target(i, k) { block.target.as_str() } else { block.other() };
+            let answer = Answer { session_id, block_id: &block.id, pair_id: &pair.id, chosen_condition };
+            seen.push(Observation { answer, chose_left: i % 2 == 0, rt_ms: 500.0 });
+        }
+    }
+    Report::of(study, &seen).blocks[0].psychometric.clone().unwrap()
+}
+
+#[test]
+fn the_golden_values_of_psignifit_come_through_the_study_file() {
+    // N = 100 a level; psignifit 4.3 with x negated: threshold −3.183 [−3.331, −3.082], width 1.001, lapse 0.029.
+    let levels = [2.48, 2.7, 3.0, 3.2, 3.5, 3.8];
+    let correct = [96, 95, 84, 72, 58, 50];
+    let found = report(&study(FALLING, &levels), 100, |i, k| i < correct[k]);
+    let fit = found.fit.as_ref().unwrap();
+    let rounded =
+        [-fit.threshold.value, -fit.threshold.high, -fit.threshold.low, fit.width.value, fit.lapse.value]
+            .map(|x| format!("{x:.3}"));
+    assert_eq!(rounded, ["-3.183", "-3.331", "-3.082", "1.001", "0.029"]);
+    let shares: Vec<u64> = found.points.iter().map(|p| p.target.as_ref().unwrap().chosen).collect();
+    assert_eq!(shares, correct.map(|c| c as u64));
+    // The plot's curve falls, and passes 75% where the threshold at 75% says.
+    assert!(fit.curve.windows(2).all(|w| w[0].level < w[1].level && w[0].share >= w[1].share));
+    let [three_quarters, nine_tenths] = fit.at[..] else { panic!("two thresholds were asked for") };
+    let crossing = fit.curve.windows(2).find(|w| w[0].share >= 0.75 && w[1].share < 0.75).unwrap();
+    let level = three_quarters.level.unwrap();
+    assert!(crossing[0].level <= level && level <= crossing[1].level);
+    assert!(three_quarters.low.unwrap() < level && level < three_quarters.high.unwrap());
+    assert!(nine_tenths.level.unwrap() < level, "more triangles, fewer right answers");
+    assert!(fit.goodness.unwrap().p_simulated > 0.05);
+    // Negative controls: another shape is another threshold, and the wrong direction shows no curve.
+    let weibull = study(&FALLING.replace("gaussian", "weibull"), &levels);
+    let other = report(&weibull, 100, |i, k| i < correct[k]).fit.unwrap();
+    assert_ne!(format!("{:.3}", other.threshold.value), "3.183");
+    let rising = study(&FALLING.replace("falling", "rising"), &levels);
+    let wrong = report(&rising, 100, |i, k| i < correct[k]);
+    assert!(wrong.fit.unwrap().goodness.unwrap().p_simulated < 0.05, "{:?}", wrong.notes);
+}
+
+#[test]
+fn a_rising_block_gives_what_the_same_falling_one_gives() {
+    let correct = [52, 61, 75, 88, 97];
+    let up = [1.0, 2.0, 3.0, 4.0, 5.0];
+    let down = up.map(|x| -x);
+    let rising = report(&study(&FALLING.replace("falling", "rising"), &up), 100, |i, k| i < correct[k]);
+    let falling = report(&study(FALLING, &down), 100, |i, k| i < correct[k]);
+    let (rising, falling) = (rising.fit.unwrap(), falling.fit.unwrap());
+    assert_eq!(rising.threshold.value, -falling.threshold.value);
+    assert_eq!(rising.threshold.low, -falling.threshold.high);
+    assert_eq!(rising.width, falling.width);
+    assert_eq!(rising.at[0].low, falling.at[0].high.map(|x| -x));
+    let by = |fit: &super::PsychometricFit| fit.threshold_by_participant.clone().unwrap();
+    assert_eq!(by(&rising).low, -by(&falling).high);
+}
+
+#[test]
+fn the_interval_of_resampled_participants_grows_when_one_answers_all_alike() {
+    // Four pairs a level: answered independently, or four times the same, which is a quarter of the answers and twice the interval.
+    let share = [0.52, 0.61, 0.75, 0.88, 0.97];
+    let levels: Vec<f64> = (0..20).map(|k| f64::from(k / 4)).collect();
+    let study = study(&FALLING.replace("falling", "rising"), &levels);
+    let mut random = Random::new(3);
+    let independent = report(&study, 80, |_, k| random.bernoulli(share[k / 4]));
+    let mut random = Random::new(4);
+    let mut last = false;
+    let alike = report(&study, 80, |_, k| {
+        if k % 4 == 0 {
+            last = random.bernoulli(share[k / 4]);
+        }
+        last
+    });
+    let width = |report: &PsychometricReport| {
+        let interval = report.fit.as_ref().unwrap().threshold_by_participant.clone().unwrap();
+        interval.high - interval.low
+    };
+    assert!(width(&alike) > 1.5 * width(&independent), "{} {}", width(&alike), width(&independent));
+    assert!(alike.notes.iter().any(|n| n.contains("resampled participants")), "{:?}", alike.notes);
+}
+
+#[test]
+fn no_answers_and_hopeless_answers_are_notes() {
+    let study = study(FALLING, &[1.0, 2.0, 3.0]);
+    let empty = report(&study, 0, |_, _| true);
+    assert!(empty.fit.is_none() && empty.points.len() == 3 && !empty.notes.is_empty());
+    assert!(empty.points.iter().all(|p| p.target.is_none()));
+    for choice in [true, false] {
+        let same = report(&study, 10, |_, _| choice);
+        assert!(!same.notes.is_empty(), "{same:?}");
+        assert!(serde_json::to_string(&same).unwrap().contains("\"threshold\""));
+    }
+}
