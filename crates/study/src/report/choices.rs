@@ -7,8 +7,9 @@ use kelir_stats::clustered::{
     bootstrap, independence_warning, intraclass, mixed_logit, robust_logit,
 };
 use kelir_stats::inference::{
-    Bounds, EffectSize, Equivalence, Interval, JzsBayesFactor, ORDINARY_PRIOR_SCALE, TPlan, effect_size,
-    equivalence, jzs_bayes_factor, power_t, t_test_from_counts, wilson,
+    BinomialTest, Bounds, EffectSize, Equivalence, Interval, JzsBayesFactor, ORDINARY_PRIOR_SCALE, SignedRank,
+    TPlan, binomial_test, detectable_effect_t, effect_size, equivalence, jzs_bayes_factor, power_t, sign_test,
+    t_test_from_counts, wilcoxon_signed_rank, wilson,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -19,6 +20,8 @@ pub const LEVEL: f64 = 0.95;
 pub const ALPHA: f64 = 0.05;
 /// Resamples of a bootstrap.
 pub const REPLICATES: usize = 2000;
+/// The power that a detectable effect is worked out for.
+pub const DETECTION_POWER: f64 = 0.8;
 /// True effects, in standard deviations, that powers are worked out for.
 pub const POWER_EFFECTS: [f64; 3] = [0.2, 0.5, 0.8];
 
@@ -35,6 +38,16 @@ pub struct ChoiceAnalysis {
     pub bayes: Option<JzsBayesFactor>,
     /// Power of this test with as many participants, for true effects of [`POWER_EFFECTS`].
     pub power: Vec<TPlan>,
+    /// The true effect that this test, with as many participants, finds with a probability of [`DETECTION_POWER`].
+    pub detectable: Option<TPlan>,
+    /// Exact sign test of the participants' numbers against half the pairs: the t-test's question without normality. Null
+    /// when nobody's number differs from it.
+    pub sign: Option<BinomialTest>,
+    /// Wilcoxon's signed-rank test of the same numbers, ties exact; null likewise.
+    pub wilcoxon: Option<SignedRank>,
+    /// Exact binomial test of all choices against ½. It counts every choice as independent: right where each participant
+    /// made one, else see the clustered results.
+    pub binomial: Option<BinomialTest>,
     /// Target choices over all trials, with an interval from resampled participants.
     pub proportion: Option<Proportion>,
     /// How alike one participant's choices are.
@@ -82,7 +95,7 @@ impl ChoiceAnalysis {
         let judged = t_test_from_counts(&table, mu).ok();
         let mut effect = None;
         let mut bayes = None;
-        let (mut equivalences, mut power) = (Vec::new(), Vec::new());
+        let (mut equivalences, mut power, mut detectable) = (Vec::new(), Vec::new(), None);
         if let Some(test) = &judged {
             effect = keep("effect size", effect_size(test, LEVEL), &mut notes);
             bayes = keep("Bayes factor", jzs_bayes_factor(test, ORDINARY_PRIOR_SCALE), &mut notes);
@@ -91,6 +104,8 @@ impl ChoiceAnalysis {
             }
             let powers = POWER_EFFECTS.iter().map(|d| power_t(test.n, *d, ALPHA));
             power = powers.filter_map(Result::ok).collect();
+            detectable =
+                keep("detectable effect", detectable_effect_t(test.n, ALPHA, DETECTION_POWER), &mut notes);
             if test.p >= ALPHA && equivalences.iter().any(|e| e.p >= ALPHA) {
                 let line = "A difference that is not significant is not shown to be absent: see the tests of equivalence and the Bayes factor.";
                 notes.push(line.to_owned());
@@ -103,7 +118,12 @@ impl ChoiceAnalysis {
                 std::iter::repeat_n(cluster, usize::try_from(*people).unwrap_or_default())
             })
             .collect();
+        let numbers: Vec<f64> = clusters.iter().map(|c| c.successes as f64).collect();
+        // Both leave out who is at half the pairs; with nobody else there is nothing to test, which t's note has said.
+        let sign = sign_test(&numbers, mu).ok();
+        let wilcoxon = wilcoxon_signed_rank(&numbers, mu).ok();
         let proportion = proportion(&clusters, seed);
+        let binomial = proportion.as_ref().and_then(|p| binomial_test(p.chosen, p.trials, 0.5).ok());
         let several = pairs > 1 && clusters.len() > 1;
         let mut intraclass_found = None;
         let (mut robust, mut mixed) = (None, None);
@@ -116,7 +136,7 @@ impl ChoiceAnalysis {
                 mixed = keep("random-intercept logit", mixed_logit(&rows), &mut notes);
                 notes.extend(independence_warning(&clusters).ok().flatten().map(|warning| {
                     format!(
-                        "Wilson's interval of the overall proportion is a per-trial one. {}",
+                        "The binomial test and Wilson's interval of the overall proportion are per-trial ones. {}",
                         warning.message
                     )
                 }));
@@ -128,6 +148,10 @@ impl ChoiceAnalysis {
             equivalence: equivalences,
             bayes,
             power,
+            detectable,
+            sign,
+            wilcoxon,
+            binomial,
             proportion,
             intraclass: intraclass_found,
             robust_logit: robust,

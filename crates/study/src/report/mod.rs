@@ -1,19 +1,22 @@
 //! The whole report of a study: the paper's tests, and beside them what the paper left out.
 
 mod choices;
+mod methods;
 mod psychometric;
+mod scaling;
 
-pub use choices::{ALPHA, ChoiceAnalysis, LEVEL, POWER_EFFECTS, Proportion, REPLICATES};
+pub use choices::{ALPHA, ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, Proportion, REPLICATES};
 pub use psychometric::{
     CurvePoint, Goodness, LevelPoint, Parameter, PsychometricFit, PsychometricReport, ThresholdAt,
 };
+pub use scaling::{Consistency, Triads};
 
 use crate::analysis::{Answer, BlockSummary, summarise};
-use crate::definition::{GUESS, StudyDefinition};
+use crate::definition::StudyDefinition;
 use kelir_stats::inference::holm;
-use kelir_stats::pairwise::{Choice, Observer, ScaleIntervals, ScaleOptions, observer_intervals};
+use kelir_stats::pairwise::ScaleIntervals;
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 /// One answer as the report reads it.
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +38,12 @@ pub struct Report {
     pub scale: Option<ScaleIntervals>,
     /// Why there is no scale.
     pub scale_note: Option<String>,
-    /// How the numbers were got, sentence by sentence, as a methods section says it.
+    /// How far observers contradict that scale and themselves; null without one.
+    pub consistency: Option<Consistency>,
+    /// How the numbers that are there were got, paragraph by paragraph, as a methods section says it.
     pub methods: Vec<String>,
+    /// What to cite for the methods that were used, in order of appearance.
+    pub references: Vec<String>,
 }
 
 /// A block judged.
@@ -57,6 +64,8 @@ pub struct BlockReport {
     pub left: Option<Proportion>,
     /// Response times in ms; null without answers.
     pub rt_ms: Option<Quartiles>,
+    /// Their 1st to 99th percentile, interpolated likewise; empty without answers.
+    pub rt_percentiles_ms: Vec<f64>,
 }
 
 /// One pair of a block.
@@ -100,11 +109,14 @@ impl Report {
                 block_report(study, summary, p_holm, seen)
             })
             .collect();
-        let (scale, scale_note) = match scale(study, observations) {
-            Ok(scale) => (Some(scale), None),
-            Err(note) => (None, Some(note)),
+        let (scale, consistency, scale_note) = match scaling::scale(study, observations) {
+            Ok((scale, consistency)) => (Some(scale), Some(consistency), None),
+            Err(note) => (None, None, Some(note)),
         };
-        Report { blocks, scale, scale_note, methods: methods(study) }
+        let mut report =
+            Report { blocks, scale, scale_note, consistency, methods: Vec::new(), references: Vec::new() };
+        (report.methods, report.references) = methods::of(study, &report);
+        report
     }
 }
 
@@ -129,6 +141,8 @@ fn block_report(
         })
         .collect();
     let psychometric = study.block(&summary.id).and_then(|block| psychometric::of(block, seen, study.seed));
+    let mut times: Vec<f64> = seen.iter().map(|o| o.rt_ms).filter(|ms| ms.is_finite()).collect();
+    times.sort_by(f64::total_cmp);
     let lefts = seen.iter().filter(|o| o.chose_left).count() as u64;
     BlockReport {
         p_holm,
@@ -136,123 +150,27 @@ fn block_report(
         by_pair,
         psychometric,
         left: Proportion::of(lefts, seen.len() as u64),
-        rt_ms: Quartiles::of(seen.iter().map(|o| o.rt_ms)),
+        rt_ms: Quartiles::of_sorted(&times),
+        rt_percentiles_ms: (1..100).filter_map(|p| quantile(&times, f64::from(p) / 100.0)).collect(),
         summary,
     }
 }
 
 impl Quartiles {
-    /// Quartiles of finite values; `None` without any.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Quartiles> {
-        let mut values: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
-        values.sort_by(f64::total_cmp);
-        let last = values.len().checked_sub(1)?;
-        let at = |q: f64| {
-            let place = q * last as f64;
-            let below = place.floor() as usize;
-            let above = (below + 1).min(last);
-            values[below] + (place - below as f64) * (values[above] - values[below])
-        };
-        Some(Quartiles { n: values.len() as u64, q1: at(0.25), median: at(0.5), q3: at(0.75) })
+    /// Quartiles of finite values in rising order; `None` without any.
+    fn of_sorted(values: &[f64]) -> Option<Quartiles> {
+        let at = |q| quantile(values, q);
+        Some(Quartiles { n: values.len() as u64, q1: at(0.25)?, median: at(0.5)?, q3: at(0.75)? })
     }
 }
 
-/// The conditions' positions from all blocks but catch blocks. Blocks of stills and of animations are pooled: the scale is
-/// of conditions, whatever is shown.
-fn scale(study: &StudyDefinition, observations: &[Observation<'_>]) -> Result<ScaleIntervals, String> {
-    let blocks: HashMap<&str, &[String; 2]> =
-        study.blocks.iter().filter(|b| !b.catch).map(|b| (b.id.as_str(), &b.conditions)).collect();
-    let mut names: Vec<String> = blocks.values().flat_map(|c| c.iter().cloned()).collect();
-    names.sort();
-    names.dedup();
-    if names.len() < 3 {
-        return Err("A scale needs three conditions; two are compared by their proportion.".to_owned());
-    }
-    let index: HashMap<&str, usize> = names.iter().enumerate().map(|(i, n)| (n.as_str(), i)).collect();
-    let mut observers: BTreeMap<&str, BTreeMap<(usize, usize), u64>> = BTreeMap::new();
-    for Observation { answer, .. } in observations {
-        let Some([a, b]) = blocks.get(answer.block_id) else { continue };
-        let (winner, loser) = if answer.chosen_condition == a {
-            (a, b)
-        } else if answer.chosen_condition == b {
-            (b, a)
-        } else {
-            continue;
-        };
-        let choices = observers.entry(answer.session_id).or_default();
-        *choices.entry((index[winner.as_str()], index[loser.as_str()])).or_default() += 1;
-    }
-    let observers: Vec<Observer> = observers
-        .into_iter()
-        .map(|(id, choices)| {
-            let choice = |((winner, loser), times)| Choice { winner, loser, times };
-            Observer { id: id.to_owned(), choices: choices.into_iter().map(choice).collect() }
-        })
-        .collect();
-    let options = ScaleOptions::default();
-    observer_intervals(&names, &observers, options, REPLICATES, LEVEL, study.seed)
-        .map_err(|error| format!("No scale: {error}."))
-}
-
-fn methods(study: &StudyDefinition) -> Vec<String> {
-    let mut methods = vec![
-        format!(
-            "Participants saw {} pairs of stimuli in {} blocks and were asked: \"{}\" They had to choose one of each pair.",
-            study.trial_count(),
-            study.blocks.len(),
-            study.question
-        ),
-        "The order of pairs within a block was random; sides were balanced within participants and, over participants, pair by \
-         pair (mirrored plans, allocated to the lowest slot that no completed or active session held)."
-            .to_owned(),
-        "Per block, the number of choices of the target condition by each participant who answered all its pairs was compared \
-         with half the number of pairs by a two-tailed one-sample t-test; p-values are also given corrected for the number of blocks \
-         by Holm's method."
-            .to_owned(),
-        format!(
-            "Effect sizes are Cohen's d and Hedges' g with {:.0}% intervals from the noncentral t distribution; equivalence was tested by \
-             two one-sided t-tests with bounds of ±0.5 choices and ±0.5 standard deviations; the Bayes factor is that of Jeffreys, Zellner and \
-             Siow with a Cauchy prior of scale √2/2.",
-            100.0 * LEVEL
-        ),
-        format!(
-            "Choices of one participant are not independent: the interval of the overall proportion comes from {REPLICATES} resamples of \
-             participants (percentile method, seed {}), with the intraclass correlation after Fleiss and Cuzick, a logistic regression with \
-             cluster-robust standard errors (CR1), and one with a random intercept per participant (maximum likelihood).",
-            study.seed
-        ),
-    ];
-    if study.blocks.iter().any(|block| block.psychometric.is_some()) {
-        methods.push(format!(
-            "Psychometric functions have a guess rate of {GUESS} (two alternatives) and a lapse rate with the prior Beta(1, 10) where \
-             the study file does not fix it; threshold (halfway between guessing and lapsing) and width (from 5% to 95%) are given where \
-             the posterior under psignifit 4's priors is highest, with {:.0}% posterior intervals and beta-binomial overdispersion; the \
-             threshold also by maximum likelihood with an interval from {REPLICATES} resamples of participants; goodness of fit is the \
-             deviance against that of simulated observers.",
-            100.0 * LEVEL
-        ));
-    }
-    let rules = &study.screening;
-    let mut excluded = Vec::new();
-    if let Some(least) = rules.min_rt_ms {
-        excluded.push(format!("with more than {} answers faster than {least} ms", rules.max_fast_trials));
-    }
-    if let Some(most) = rules.max_failed_catch_trials {
-        excluded.push(format!("with more than {most} wrong answers in catch trials"));
-    }
-    if rules.straight_lining {
-        excluded.push("who chose the same side in every trial".to_owned());
-    }
-    if rules.incomplete {
-        excluded.push("who did not finish".to_owned());
-    }
-    methods.push(if excluded.is_empty() {
-        "The study file states no rules of exclusion, and nobody was excluded.".to_owned()
-    } else {
-        let who = excluded.join("; ");
-        format!("By rules stated in the study file before data were seen, participants were excluded {who}.")
-    });
-    methods
+/// The q-quantile of values in rising order, by R's type 7; `None` without any.
+fn quantile(values: &[f64], q: f64) -> Option<f64> {
+    let last = values.len().checked_sub(1)?;
+    let place = q * last as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(last);
+    Some(values[below] + (place - below as f64) * (values[above] - values[below]))
 }
 
 #[cfg(test)]

@@ -76,7 +76,13 @@ fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
     let scale = report.scale.unwrap();
     assert_eq!(scale.scale.conditions, ["mc", "pa", "photo"]);
     assert!(scale.scale.jod.iter().all(|x| x.abs() < 1e-9), "nobody was preferred");
-    assert_eq!(report.methods.len(), 6);
+    assert_eq!((report.methods.len(), report.references.len()), (7, 13), "{:?}", report.methods);
+    // Each participant answered two of the three comparisons: no triad is whole.
+    let consistency = report.consistency.unwrap();
+    assert_eq!(consistency.triads, Triads { triads: 0, circular: 0, consistence: None });
+    assert_eq!((consistency.observers, consistency.odd.len()), (16, 0));
+    let percentiles = &report.blocks[0].rt_percentiles_ms;
+    assert_eq!((percentiles.len(), percentiles[0], percentiles[49]), (99, 100.0, 850.0));
 }
 
 #[test]
@@ -126,6 +132,12 @@ fn the_papers_counts_are_judged_as_the_issue_says() {
         (effect.g, -0.248, 5e-4),
         (effect.g_interval.low, -0.590, 5e-4),
         (effect.g_interval.high, 0.098, 5e-4),
+        // R 4.2.2: binom.test(26, 64), binom.test(6, 18), power.t.test(n = 32, power = .8, type = "one.sample", strict = TRUE). All who
+        // differ from 1 do so by 1: Wilcoxon's exact p is the sign test's.
+        (first.binomial.unwrap().p, 0.168642911439704, 1e-14),
+        (first.sign.unwrap().p, 0.237884521484375, 1e-14),
+        (first.wilcoxon.unwrap().p, 0.237884521484375, 1e-14),
+        (first.detectable.unwrap().d, 0.5113, 5e-5),
         (icc(&first), 0.093, 5e-4),
         (icc(&analysis([3, 10, 19])), 0.167, 5e-4),
     ] {

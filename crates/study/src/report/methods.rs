@@ -1,0 +1,231 @@
+//! How the numbers were got: a methods section of what was computed for this study, and nothing else.
+
+use super::{DETECTION_POWER, LEVEL, POWER_EFFECTS, REPLICATES, Report};
+use crate::definition::{Kind, StudyDefinition};
+use kelir_stats::pairwise::Estimator;
+
+const HEDGES: &str = "Hedges, L. V. (1981). Distribution theory for Glass's estimator of effect size and related estimators. Journal of \
+     Educational Statistics, 6(2), 107–128.";
+const STEIGER: &str = "Steiger, J. H., & Fouladi, R. T. (1997). Noncentrality interval estimation and the evaluation of statistical models. \
+     In L. L. Harlow, S. A. Mulaik, & J. H. Steiger (Eds.), What if there were no significance tests? (pp. 221–257). Erlbaum.";
+const HOLM: &str = "Holm, S. (1979). A simple sequentially rejective multiple test procedure. Scandinavian Journal of Statistics, 6(2), 65–70.";
+const SCHUIRMANN: &str = "Schuirmann, D. J. (1987). A comparison of the two one-sided tests procedure and the power approach for assessing the \
+     equivalence of average bioavailability. Journal of Pharmacokinetics and Biopharmaceutics, 15(6), 657–680.";
+const ROUDER: &str = "Rouder, J. N., Speckman, P. L., Sun, D., Morey, R. D., & Iverson, G. (2009). Bayesian t tests for accepting and \
+     rejecting the null hypothesis. Psychonomic Bulletin & Review, 16(2), 225–237.";
+const WILCOXON: &str =
+    "Wilcoxon, F. (1945). Individual comparisons by ranking methods. Biometrics Bulletin, 1(6), 80–83.";
+const WILSON: &str = "Wilson, E. B. (1927). Probable inference, the law of succession, and statistical inference. Journal of the American \
+     Statistical Association, 22(158), 209–212.";
+const DAVISON: &str = "Davison, A. C., & Hinkley, D. V. (1997). Bootstrap methods and their application. Cambridge University Press.";
+const FLEISS: &str = "Fleiss, J. L., & Cuzick, J. (1979). The reliability of dichotomous judgments: unequal numbers of judges per subject. \
+     Applied Psychological Measurement, 3(4), 537–542.";
+const LIANG: &str = "Liang, K.-Y., & Zeger, S. L. (1986). Longitudinal data analysis using generalized linear models. Biometrika, 73(1), 13–22.";
+const THURSTONE: &str =
+    "Thurstone, L. L. (1927). A law of comparative judgment. Psychological Review, 34(4), 273–286.";
+const PEREZ: &str = "Perez-Ortiz, M., & Mantiuk, R. K. (2017). A practical guide and software for analysing pairwise comparison experiments. \
+     arXiv:1712.03686.";
+const KENDALL: &str =
+    "Kendall, M. G., & Babington Smith, B. (1940). On the method of paired comparisons. Biometrika, 31(3/4), 324–345.";
+const FIRTH: &str =
+    "Firth, D. (1993). Bias reduction of maximum likelihood estimates. Biometrika, 80(1), 27–38.";
+
+/// Paragraphs of methods, and references, for what `report` holds.
+pub(super) fn of(study: &StudyDefinition, report: &Report) -> (Vec<String>, Vec<String>) {
+    let mut text = Text::default();
+    text.say(design(study), &[]);
+    text.say(screening(study), &[]);
+    let any = |is: &dyn Fn(&super::ChoiceAnalysis) -> bool| report.blocks.iter().any(|b| is(&b.analysis));
+    if any(&|a| a.t_test.t.is_some()) {
+        tests(&mut text, report);
+    }
+    if any(&|a| a.proportion.is_some()) {
+        proportions(&mut text, study, &any);
+    }
+    scale(&mut text, report);
+    (text.paragraphs, text.references)
+}
+
+/// What was said, with what it rests on.
+#[derive(Default)]
+struct Text {
+    paragraphs: Vec<String>,
+    references: Vec<String>,
+}
+
+impl Text {
+    fn say(&mut self, paragraph: String, references: &[&str]) {
+        self.paragraphs.push(paragraph);
+        for reference in references {
+            if !self.references.iter().any(|known| known == reference) {
+                self.references.push((*reference).to_owned());
+            }
+        }
+    }
+}
+
+fn design(study: &StudyDefinition) -> String {
+    let of_kind = |kind| study.blocks.iter().filter(|b| b.kind == kind).map(|b| b.pairs.len()).sum::<usize>();
+    let kinds: Vec<String> = [(Kind::Still, "still"), (Kind::Animation, "animation")]
+        .into_iter()
+        .map(|(kind, name)| (of_kind(kind), name))
+        .filter(|(pairs, _)| *pairs > 0)
+        .map(|(pairs, name)| count(pairs, name))
+        .collect();
+    let catch = study.blocks.iter().filter(|b| b.catch).map(|b| b.pairs.len()).sum::<usize>();
+    let catch = if catch == 0 {
+        String::new()
+    } else {
+        format!(" {} of them served to catch inattention and are not analysed.", count(catch, "pair"))
+    };
+    let [width, height] = study.size;
+    format!(
+        "Participants saw {} of pictures of {width} × {height} pixels ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
+         \"{}\" They had to choose one of each pair (two-alternative forced choice).{catch} Blocks came in a fixed order and pairs \
+         within a block in a random one. Sides were balanced within participants and, over participants, pair by pair (mirrored plans \
+         from the seed {}, given to the lowest place in the design that no completed or active session held).",
+        count(study.trial_count(), "pair"),
+        kinds.join(", "),
+        count(study.blocks.len(), "block"),
+        study.surround,
+        study.question,
+        study.seed,
+    )
+}
+
+fn screening(study: &StudyDefinition) -> String {
+    let rules = &study.screening;
+    let mut excluded = Vec::new();
+    if let Some(least) = rules.min_rt_ms {
+        excluded.push(format!("with more than {} answers faster than {least} ms", rules.max_fast_trials));
+    }
+    if let Some(most) = rules.max_failed_catch_trials {
+        excluded.push(format!("with more than {most} wrong answers in catch trials"));
+    }
+    if rules.straight_lining {
+        excluded.push("who chose the same side in every trial".to_owned());
+    }
+    if rules.incomplete {
+        excluded.push("who did not finish".to_owned());
+    }
+    let counted = "Each block counts the participants who answered all its pairs.";
+    if excluded.is_empty() {
+        format!("The study file states no rules of exclusion, and nobody was excluded. {counted}")
+    } else {
+        let who = excluded.join("; ");
+        format!(
+            "By rules stated in the study file before data were seen, participants were excluded {who}. {counted}"
+        )
+    }
+}
+
+fn tests(text: &mut Text, report: &Report) {
+    let tested = report.blocks.iter().filter(|b| b.p_holm.is_some()).count();
+    let holm = if tested > 1 {
+        format!(
+            " P-values are also given corrected by Holm's method for {tested} blocks (the smallest times {tested}, the next times {}, …, \
+             never falling, at most 1).",
+            tested - 1
+        )
+    } else {
+        String::new()
+    };
+    text.say(
+        format!(
+            "Per block, the number of choices of the target condition by each participant was compared with half the number of pairs, \
+             μ₀, by a two-tailed one-sample t-test: t = (x̄ − μ₀) / (s / √n) with n − 1 degrees of freedom, where x̄ is the mean over the \
+             n participants and s their standard deviation with n − 1 in the denominator.{holm}"
+        ),
+        if tested > 1 { &[HOLM] } else { &[] },
+    );
+    text.say(
+        format!(
+            "Effect sizes are Cohen's d = (x̄ − μ₀) / s and Hedges' g = J d with J = Γ(ν/2) / (√(ν/2) Γ((ν − 1)/2)) and ν = n − 1, with {:.0}% \
+             intervals from the noncentral t distribution. Equivalence to μ₀ was tested by two one-sided t-tests with bounds of ±0.5 choices \
+             and of ±0.5 s; the larger of the two p-values is given. The Bayes factor is that of Jeffreys, Zellner and Siow for a standardised effect with a Cauchy \
+             prior of scale √2/2 against no effect. Without the assumption of normality the same numbers were compared with μ₀ by an exact \
+             sign test and by Wilcoxon's signed-rank test with the exact distribution of tied ranks (above 500 values, its normal approximation); both leave out participants at μ₀.",
+            100.0 * LEVEL
+        ),
+        &[HEDGES, STEIGER, SCHUIRMANN, ROUDER, WILCOXON],
+    );
+    let effects = POWER_EFFECTS.map(|d| d.to_string()).join(", ");
+    text.say(
+        format!(
+            "Power is that of the two-tailed t-test at α = 0.05 with the participants there are, for true effects of d = {effects}, and the \
+             detectable effect is the one that it finds with a probability of {:.0}%. Neither is computed from the effect observed.",
+            100.0 * DETECTION_POWER
+        ),
+        &[],
+    );
+}
+
+fn proportions(
+    text: &mut Text,
+    study: &StudyDefinition,
+    any: &dyn Fn(&dyn Fn(&super::ChoiceAnalysis) -> bool) -> bool,
+) {
+    let mut said = format!(
+        "The interval of the share of all choices comes from {REPLICATES} resamples of whole participants (percentile method, seed {}), \
+         because choices of one participant are not independent; intervals of single pairs, to which each participant gave one answer, are Wilson's. \
+         The binomial test is the exact two-sided one (the sum of the probabilities of all outcomes no likelier than the one seen).",
+        study.seed
+    );
+    let mut references = vec![DAVISON, WILSON];
+    if any(&|a| a.intraclass.is_some()) {
+        said.push_str(
+            " The intraclass correlation is 1 − Σ yᵢ(nᵢ − yᵢ)/nᵢ / ((N − m) p(1 − p)) for m participants with yᵢ target choices of nᵢ, N in \
+             all and p the pooled share.",
+        );
+        references.push(FLEISS);
+    }
+    if any(&|a| a.robust_logit.is_some()) {
+        said.push_str(
+            " The log odds of a target choice were estimated by logistic regression with standard errors that are robust to any \
+             dependence within participants (factor m/(m − 1), t with m − 1 degrees of freedom).",
+        );
+        references.push(LIANG);
+    }
+    if any(&|a| a.mixed_logit.is_some()) {
+        said.push_str(
+            " A logistic regression with a normal random intercept per participant was fitted by maximum likelihood, each participant's integral by \
+             adaptive quadrature.",
+        );
+    }
+    text.say(said, &references);
+}
+
+fn scale(text: &mut Text, report: &Report) {
+    let Some(found) = &report.scale else { return };
+    let mut references = vec![THURSTONE, PEREZ];
+    let separated = if found.scale.estimator == Estimator::Jeffreys || found.penalised > 0 {
+        references.push(FIRTH);
+        " Where choices were separated, so that no finite maximum exists, the likelihood was multiplied by Jeffreys' prior."
+    } else {
+        ""
+    };
+    let mut said = format!(
+        "All conditions were placed on one axis by maximum likelihood of Thurstone's Case V: P(a chosen over b) = Φ((qₐ − q_b) / 1.4826), so that a \
+         difference of 1 just-objectionable difference (JOD) is a choice by 75%; positions are relative to their mean.{separated} Intervals come \
+         from {} resamples of the {} participants (percentile method, seed {}).",
+        found.replicates, found.observers, found.seed
+    );
+    if let Some(consistency) = &report.consistency {
+        if consistency.triads.triads > 0 {
+            said.push_str(" Circular triads were counted per participant.");
+            references.push(KENDALL);
+        }
+        if consistency.observers > 0 {
+            said.push_str(
+                " Each participant's choices were predicted from the scale of all the others; whoever lies more than 1.5 interquartile ranges below \
+                 the first quartile of the mean log likelihoods is listed, not excluded.",
+            );
+        }
+    }
+    text.say(said, &references);
+}
+
+/// "1 pair", "2 pairs".
+fn count(n: usize, what: &str) -> String {
+    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+}

@@ -1,0 +1,104 @@
+//! All conditions on one axis, and how far the answers bear that out.
+
+use super::{LEVEL, Observation, REPLICATES};
+use crate::definition::StudyDefinition;
+use kelir_stats::pairwise::{
+    Choice, Observer, ObserverFit, ScaleIntervals, ScaleOptions, circular_triads, observer_intervals,
+    odd_observers, pool,
+};
+use serde::Serialize;
+use std::collections::{BTreeMap, HashMap};
+
+/// Above this many observers none is looked at alone: each costs a fit of all the others.
+const MOST_SCREENED: usize = 2000;
+
+/// How far observers contradict the one axis and themselves.
+#[derive(Clone, Debug, Serialize)]
+pub struct Consistency {
+    /// Circular triads over all observers.
+    pub triads: Triads,
+    /// Observers whose choices the scale of all the others was asked to predict; 0 with fewer than three or with more than
+    /// 2,000.
+    pub observers: u64,
+    /// Those whom it predicts far worse than the rest (beyond Tukey's fence): to look at, not to exclude.
+    pub odd: Vec<ObserverFit>,
+}
+
+/// Circular triads (a over b, b over c, c over a), summed over observers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Triads {
+    /// Triads whose three pairs one observer answered with a majority each.
+    pub triads: u64,
+    /// Those that run in a circle; a coin toss makes a quarter of them circular.
+    pub circular: u64,
+    /// Mean of Kendall & Babington Smith's coefficient of consistence over the observers who answered every pair; 1: no
+    /// circles. Null without such observers.
+    pub consistence: Option<f64>,
+}
+
+/// The conditions' positions from all blocks but catch blocks. Blocks of stills and of animations are pooled: the scale is
+/// of conditions, whatever is shown.
+///
+/// # Errors
+/// Why there is no scale, as a sentence.
+pub(super) fn scale(
+    study: &StudyDefinition,
+    observations: &[Observation<'_>],
+) -> Result<(ScaleIntervals, Consistency), String> {
+    let blocks: HashMap<&str, &[String; 2]> =
+        study.blocks.iter().filter(|b| !b.catch).map(|b| (b.id.as_str(), &b.conditions)).collect();
+    let mut names: Vec<String> = blocks.values().flat_map(|c| c.iter().cloned()).collect();
+    names.sort();
+    names.dedup();
+    if names.len() < 3 {
+        return Err("A scale needs three conditions; two are compared by their proportion.".to_owned());
+    }
+    let index: HashMap<&str, usize> = names.iter().enumerate().map(|(i, n)| (n.as_str(), i)).collect();
+    let mut observers: BTreeMap<&str, BTreeMap<(usize, usize), u64>> = BTreeMap::new();
+    for Observation { answer, .. } in observations {
+        let Some([a, b]) = blocks.get(answer.block_id) else { continue };
+        let (winner, loser) = if answer.chosen_condition == a {
+            (a, b)
+        } else if answer.chosen_condition == b {
+            (b, a)
+        } else {
+            continue;
+        };
+        let choices = observers.entry(answer.session_id).or_default();
+        *choices.entry((index[winner.as_str()], index[loser.as_str()])).or_default() += 1;
+    }
+    let observers: Vec<Observer> = observers
+        .into_iter()
+        .map(|(id, choices)| {
+            let choice = |((winner, loser), times)| Choice { winner, loser, times };
+            Observer { id: id.to_owned(), choices: choices.into_iter().map(choice).collect() }
+        })
+        .collect();
+    let options = ScaleOptions::default();
+    let found = observer_intervals(&names, &observers, options, REPLICATES, LEVEL, study.seed)
+        .map_err(|error| format!("No scale: {error}."))?;
+    Ok((found, consistency(&names, &observers)))
+}
+
+fn consistency(names: &[String], observers: &[Observer]) -> Consistency {
+    let (mut triads, mut circular, mut consistences) = (0, 0, Vec::new());
+    for observer in observers {
+        let Ok(wins) = pool(names.len(), [observer]) else { continue };
+        let own = circular_triads(&wins);
+        triads += own.triads;
+        circular += own.circular;
+        consistences.extend(own.consistence);
+    }
+    let mean =
+        (!consistences.is_empty()).then(|| consistences.iter().sum::<f64>() / consistences.len() as f64);
+    let fits = if observers.len() > MOST_SCREENED {
+        Vec::new()
+    } else {
+        odd_observers(names, observers, ScaleOptions::default()).unwrap_or_default()
+    };
+    Consistency {
+        triads: Triads { triads, circular, consistence: mean },
+        observers: fits.iter().filter(|f| f.log_likelihood.is_some()).count() as u64,
+        odd: fits.into_iter().filter(|f| f.odd).collect(),
+    }
+}
