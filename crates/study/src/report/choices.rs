@@ -7,9 +7,9 @@ use kelir_stats::clustered::{
     bootstrap, independence_warning, intraclass, mixed_logit, robust_logit,
 };
 use kelir_stats::inference::{
-    BinomialTest, Bounds, EffectSize, Equivalence, Interval, JzsBayesFactor, ORDINARY_PRIOR_SCALE, SignedRank,
-    TPlan, binomial_test, detectable_effect_t, effect_size, equivalence, jzs_bayes_factor, power_t, sign_test,
-    t_test_from_counts, wilcoxon_signed_rank, wilson,
+    BinomialTest, Bounds, EffectSize, Equivalence, Interval, JzsBayesFactor, ORDINARY_PRIOR_SCALE,
+    SignedRank, TPlan, binomial_test, detectable_effect_t, effect_size, equivalence, jzs_bayes_factor,
+    power_t, sign_test, t_test_from_counts, wilcoxon_signed_rank, wilson,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -25,8 +25,7 @@ const THURSTONE: &str =
     "Thurstone, L. L. (1927). A law of comparative judgment. Psychological Review, 34(4), 273–286.";
 const PEREZ: &str = "Perez-Ortiz, M., & Mantiuk, R. K. (2017). A practical guide and software for analysing pairwise comparison experiments. \
      arXiv:1712.03686.";
-const KENDALL: &str =
-    "Kendall, M. G., & Babington Smith, B. (1940). On the method of paired comparisons. Biometrika, 31(3/4), 324–345.";
+const KENDALL: &str = "Kendall, M. G., & Babington Smith, B. (1940). On the method of paired comparisons. Biometrika, 31(3/4), 324–345.";
 const FIRTH: &str =
     "Firth, D. (1993). Bias reduction of maximum likelihood estimates. Biometrika, 80(1), 27–38.";
 
@@ -76,7 +75,7 @@ fn design(study: &StudyDefinition) -> String {
     let catch = if catch == 0 {
         String::new()
     } else {
-        format!(" {} of them served to catch inattention and are not analysed.", count(catch, "pair"))
+        format!(" Of these, {} served to catch inattention and entered no analysis.", count(catch, "pair"))
     };
     let [width, height] = study.size;
     format!(
@@ -123,9 +122,8 @@ fn tests(text: &mut Text, report: &Report) {
     let tested = report.blocks.iter().filter(|b| b.p_holm.is_some()).count();
     let holm = if tested > 1 {
         format!(
-            " P-values are also given corrected by Holm's method for {tested} blocks (the smallest times {tested}, the next times {}, …, \
-             never falling, at most 1).",
-            tested - 1
+            " P-values are also given corrected by Holm's method for {tested} blocks: the k-th smallest is multiplied by {tested} + 1 − k, and is \
+             never below the one before nor above 1."
         )
     } else {
         String::new()
@@ -133,16 +131,16 @@ fn tests(text: &mut Text, report: &Report) {
     text.say(
         format!(
             "Per block, the number of choices of the target condition by each participant was compared with half the number of pairs, \
-             μ₀, by a two-tailed one-sample t-test: t = (x̄ − μ₀) / (s / √n) with n − 1 degrees of freedom, where x̄ is the mean over the \
-             n participants and s their standard deviation with n − 1 in the denominator.{holm}"
+             μ₀, by a two-tailed one-sample t-test: t = (M − μ₀) / (SD / √n) with n − 1 degrees of freedom, where M is the mean over the n \
+             participants and SD their standard deviation with n − 1 in the denominator.{holm}"
         ),
         if tested > 1 { &[HOLM] } else { &[] },
     );
     text.say(
         format!(
-            "Effect sizes are Cohen's d = (x̄ − μ₀) / s and Hedges' g = J d with J = Γ(ν/2) / (√(ν/2) Γ((ν − 1)/2)) and ν = n − 1, with {:.0}% \
+            "Effect sizes are Cohen's d = (M − μ₀) / SD and Hedges' g = J d with J = Γ(ν/2) / (√(ν/2) Γ((ν − 1)/2)) and ν = n − 1, with {:.0}% \
              intervals from the noncentral t distribution. Equivalence to μ₀ was tested by two one-sided t-tests with bounds of ±0.5 choices \
-             and of ±0.5 s; the larger of the two p-values is given. The Bayes factor is that of Jeffreys, Zellner and Siow for a standardised effect with a Cauchy \
+             and of ±0.5 SD; the larger of the two p-values is given. The Bayes factor is that of Jeffreys, Zellner and Siow for a standardised effect with a Cauchy \
              prior of scale √2/2 against no effect. Without the assumption of normality the same numbers were compared with μ₀ by an exact \
              sign test and by Wilcoxon's signed-rank test with the exact distribution of tied ranks (above 500 values, its normal approximation); both leave out participants at μ₀.",
             100.0 * LEVEL
@@ -205,7 +203,7 @@ fn scale(text: &mut Text, report: &Report) {
         ""
     };
     let mut said = format!(
-        "All conditions were placed on one axis by maximum likelihood of Thurstone's Case V: P(a chosen over b) = Φ((qₐ − q_b) / 1.4826), so that a \
+        "All conditions were placed on one axis by maximum likelihood of Thurstone's Case V: P(a chosen over b) = Φ((q(a) − q(b)) / 1.4826), so that a \
          difference of 1 just-objectionable difference (JOD) is a choice by 75%; positions are relative to their mean.{separated} Intervals come \
          from {} resamples of the {} participants (percentile method, seed {}).",
         found.replicates, found.observers, found.seed
