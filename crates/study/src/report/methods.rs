@@ -1,7 +1,7 @@
 //! How the numbers were got: a methods section of what was computed for this study, and nothing else.
 
-use super::{DETECTION_POWER, LEVEL, POWER_EFFECTS, REPLICATES, Report};
-use crate::definition::{Kind, StudyDefinition};
+use super::{ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, REPLICATES, Report};
+use crate::definition::{GUESS, Kind, StudyDefinition};
 use kelir_stats::pairwise::Estimator;
 
 const HEDGES: &str = "Hedges, L. V. (1981). Distribution theory for Glass's estimator of effect size and related estimators. Journal of \
@@ -26,6 +26,10 @@ const THURSTONE: &str =
 const PEREZ: &str = "Perez-Ortiz, M., & Mantiuk, R. K. (2017). A practical guide and software for analysing pairwise comparison experiments. \
      arXiv:1712.03686.";
 const KENDALL: &str = "Kendall, M. G., & Babington Smith, B. (1940). On the method of paired comparisons. Biometrika, 31(3/4), 324–345.";
+const SCHUETT: &str = "Schütt, H. H., Harmeling, S., Macke, J. H., & Wichmann, F. A. (2016). Painfree and accurate Bayesian estimation of psychometric \
+     functions for (potentially) overdispersed data. Vision Research, 122, 105–123.";
+const WICHMANN: &str = "Wichmann, F. A., & Hill, N. J. (2001). The psychometric function: I. Fitting, sampling, and goodness of fit. Perception & \
+     Psychophysics, 63(8), 1293–1313.";
 const FIRTH: &str =
     "Firth, D. (1993). Bias reduction of maximum likelihood estimates. Biometrika, 80(1), 27–38.";
 
@@ -34,15 +38,20 @@ pub(super) fn of(study: &StudyDefinition, report: &Report) -> (Vec<String>, Vec<
     let mut text = Text::default();
     text.say(design(study), &[]);
     text.say(screening(study), &[]);
-    let any = |is: &dyn Fn(&super::ChoiceAnalysis) -> bool| report.blocks.iter().any(|b| is(&b.analysis));
-    if any(&|a| a.t_test.t.is_some()) {
+    if any(report, |a| a.t_test.t.is_some()) {
         tests(&mut text, report);
     }
-    if any(&|a| a.proportion.is_some()) {
-        proportions(&mut text, study, &any);
+    if any(report, |a| a.proportion.is_some()) {
+        proportions(&mut text, study, report);
     }
+    psychometric(&mut text, report);
     scale(&mut text, report);
     (text.paragraphs, text.references)
+}
+
+/// Whether something of a block's analysis is there.
+fn any(report: &Report, is: impl Fn(&ChoiceAnalysis) -> bool) -> bool {
+    report.blocks.iter().any(|block| is(&block.analysis))
 }
 
 /// What was said, with what it rests on.
@@ -158,11 +167,7 @@ fn tests(text: &mut Text, report: &Report) {
     );
 }
 
-fn proportions(
-    text: &mut Text,
-    study: &StudyDefinition,
-    any: &dyn Fn(&dyn Fn(&super::ChoiceAnalysis) -> bool) -> bool,
-) {
+fn proportions(text: &mut Text, study: &StudyDefinition, report: &Report) {
     let mut said = format!(
         "The interval of the share of all choices comes from {REPLICATES} resamples of whole participants (percentile method, seed {}), \
          because choices of one participant are not independent; intervals of single pairs, to which each participant gave one answer, are Wilson's. \
@@ -170,27 +175,44 @@ fn proportions(
         study.seed
     );
     let mut references = vec![DAVISON, WILSON];
-    if any(&|a| a.intraclass.is_some()) {
+    if any(report, |a| a.intraclass.is_some()) {
         said.push_str(
             " The intraclass correlation is 1 − Σ yᵢ(nᵢ − yᵢ)/nᵢ / ((N − m) p(1 − p)) for m participants with yᵢ target choices of nᵢ, N in \
              all and p the pooled share.",
         );
         references.push(FLEISS);
     }
-    if any(&|a| a.robust_logit.is_some()) {
+    if any(report, |a| a.robust_logit.is_some()) {
         said.push_str(
             " The log odds of a target choice were estimated by logistic regression with standard errors that are robust to any \
              dependence within participants (factor m/(m − 1), t with m − 1 degrees of freedom).",
         );
         references.push(LIANG);
     }
-    if any(&|a| a.mixed_logit.is_some()) {
+    if any(report, |a| a.mixed_logit.is_some()) {
         said.push_str(
             " A logistic regression with a normal random intercept per participant was fitted by maximum likelihood, each participant's integral by \
              adaptive quadrature.",
         );
     }
     text.say(said, &references);
+}
+
+fn psychometric(text: &mut Text, report: &Report) {
+    if !report.blocks.iter().any(|b| b.psychometric.as_ref().is_some_and(|p| p.fit.is_some())) {
+        return;
+    }
+    text.say(
+        format!(
+            "Psychometric functions ψ(x) = γ + (1 − γ − λ) F(x) have a guess rate γ of {GUESS} (two alternatives) and a lapse rate λ with the \
+             prior Beta(1, 10) where the study file does not fix it; threshold (halfway between guessing and lapsing) and width (from F = 5% to 95%) are \
+             given where the posterior under psignifit 4's priors is highest, with {:.0}% posterior intervals and beta-binomial overdispersion; the \
+             threshold also by maximum likelihood with an interval from {REPLICATES} resamples of participants. Goodness of fit is the \
+             deviance against that of simulated observers, each fitted anew.",
+            100.0 * LEVEL
+        ),
+        &[SCHUETT, WICHMANN],
+    );
 }
 
 fn scale(text: &mut Text, report: &Report) {
