@@ -8,11 +8,12 @@ use crate::labels::spread;
 use crate::{Axis, Figure, PlotError, Point, Rule, Scale, Series};
 
 /// Okabe and Ito's palette without its yellow, which a white page swallows.
-const PALETTE: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#b0588f", "#1a1a1a", "#3b9ad0", "#c07f00"];
-const INK: &str = "#282828";
-const GRID: &str = "#dedede";
+pub(crate) const PALETTE: [&str; 7] =
+    ["#0072b2", "#d55e00", "#009e73", "#b0588f", "#1a1a1a", "#3b9ad0", "#c07f00"];
+pub(crate) const INK: &str = "#282828";
+pub(crate) const GRID: &str = "#dedede";
 const FAINT: &str = "#f1f1f1";
-const FONT_PX: f64 = 13.0;
+pub(crate) const FONT_PX: f64 = 13.0;
 
 /// A place on the page, px from its left upper corner.
 type Place = (f64, f64);
@@ -55,7 +56,7 @@ struct Layout {
 }
 
 /// Checks the values of an axis and fits it to them.
-fn fit(axis: &Axis, values: Vec<(String, f64)>) -> Result<Fitted, PlotError> {
+pub(crate) fn fit(axis: &Axis, values: Vec<(String, f64)>) -> Result<Fitted, PlotError> {
     for (what, value) in &values {
         if !value.is_finite() {
             return Err(PlotError::NotFinite { what: what.clone(), value: *value });
@@ -68,7 +69,7 @@ fn fit(axis: &Axis, values: Vec<(String, f64)>) -> Result<Fitted, PlotError> {
 }
 
 /// About how wide a text is, px: the reader's font is not known here.
-fn text_width(text: &str) -> f64 {
+pub(crate) fn text_width(text: &str) -> f64 {
     text.chars().count() as f64 * FONT_PX * 0.56
 }
 
@@ -225,7 +226,7 @@ impl Layout {
 }
 
 /// Tenths of a px: finer is not seen.
-fn px(at: f64) -> f64 {
+pub(crate) fn px(at: f64) -> f64 {
     (at * 10.0).round() / 10.0
 }
 
@@ -237,11 +238,11 @@ fn outline(places: &[Place]) -> String {
     steps.collect()
 }
 
-fn line(places: &[Place], colour: &str, width: f64) -> Path {
+pub(crate) fn line(places: &[Place], colour: &str, width: f64) -> Path {
     Path::new().set("d", outline(places)).set("fill", "none").set("stroke", colour).set("stroke-width", width)
 }
 
-fn dashed(line: Path) -> Path {
+pub(crate) fn dashed(line: Path) -> Path {
     line.set("stroke-dasharray", "6 4")
 }
 
@@ -265,7 +266,7 @@ fn marker(kind: usize, (x, y): Place, colour: &str) -> Path {
     Path::new().set("d", outline(&shape) + "Z").set("fill", colour)
 }
 
-fn text(content: &str, (x, y): Place, anchor: &str, colour: &str) -> Text {
+pub(crate) fn text(content: &str, (x, y): Place, anchor: &str, colour: &str) -> Text {
     Text::new(content)
         .set("x", px(x))
         .set("y", px(y))

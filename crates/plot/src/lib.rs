@@ -5,10 +5,12 @@
 
 mod axis;
 mod draw;
+mod forest;
 mod labels;
 
 pub use axis::{Axis, Scale};
 pub use draw::svg;
+pub use forest::{Estimate, Forest, forest};
 
 /// A point, and its interval if it has one.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,0 +1,89 @@
+//! One block: its numbers as a table, its notes, its psychometric function.
+
+use crate::document::{Cell, Piece, Row, Section, Table};
+use crate::figures;
+use crate::format::{MISSING, count, fixed, p_value, range, significant};
+use crate::numbers::{Number, Sample, of_block, psychometric};
+use kelir_study::report::{BlockReport, LEVEL};
+
+/// The section of a block.
+pub(crate) fn section(block: &BlockReport) -> Section {
+    let summary = &block.summary;
+    let [a, b] = &summary.conditions;
+    let mut pieces = vec![Piece::Text(format!(
+        "{a} against {b}, {} of {}; counted are choices of {}.",
+        count(summary.pairs as u64, "pair"),
+        match summary.kind {
+            kelir_study::Kind::Still => "still pictures",
+            kelir_study::Kind::Animation => "animations",
+        },
+        summary.target
+    ))];
+    if block.left.is_none() {
+        pieces.push(Piece::Text("Nobody has answered yet.".to_owned()));
+        return Section::new(title(block), pieces);
+    }
+    pieces.extend(block.analysis.notes.iter().map(|note| Piece::Warning(sentence(note))));
+    pieces.push(Piece::Table(table("", &of_block(Sample::Screened, block))));
+    if let Some(found) = &block.psychometric {
+        pieces.push(Piece::Heading("Psychometric function".to_owned()));
+        pieces.extend(found.notes.iter().map(|note| Piece::Warning(sentence(note))));
+        pieces.extend(figures::psychometric(block));
+        pieces.push(Piece::Table(table("", &psychometric(Sample::Screened, &summary.id, found))));
+    }
+    Section::new(title(block), pieces)
+}
+
+fn title(block: &BlockReport) -> String {
+    format!("{} ({})", block.summary.title, block.summary.id)
+}
+
+/// With a capital and a full stop.
+fn sentence(note: &str) -> String {
+    let mut letters = note.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    let end = if note.ends_with(['.', '!', '?']) { "" } else { "." };
+    format!("{first}{}{end}", letters.as_str())
+}
+
+/// Numbers as a table, one a row, grouped by analysis.
+pub(crate) fn table(caption: &str, numbers: &[Number]) -> Table {
+    let mut rows = Vec::new();
+    let mut group = "";
+    for number in numbers {
+        if number.analysis != group {
+            group = number.analysis;
+            rows.push(Row::Group(capital(group)));
+        }
+        rows.push(Row::Cells(cells(number)));
+    }
+    Table::new(caption, &["statistic", "value#", "95% interval#", "p#", "n#"], rows)
+}
+
+fn capital(name: &str) -> String {
+    // Names such as "t-test" keep their small letter.
+    if name.starts_with("t-") { name.to_owned() } else { sentence(name).trim_end_matches('.').to_owned() }
+}
+
+fn cells(number: &Number) -> Vec<Cell> {
+    let shown = |x: f64, decimals: usize| {
+        // Very small and very large numbers keep their digits.
+        let hidden =
+            x != 0.0 && decimals > 0 && (x.abs() < 0.5 * 0.1f64.powi(decimals as i32) || x.abs() >= 1e6);
+        if hidden { significant(x, 3) } else { fixed(x, decimals) }
+    };
+    let statistic = Cell::text(&number.statistic);
+    let interval = number.interval.map_or_else(Cell::default, |i| {
+        let level =
+            if i.level == LEVEL { String::new() } else { format!("{}%: ", fixed(100.0 * i.level, 0)) };
+        let shown = format!("{level}{}", range(i.low, i.high, number.decimals.max(1)));
+        Cell { shown, exact: Some(format!("{} {}", i.low, i.high)), note: None }
+    });
+    vec![
+        if number.note.is_empty() { statistic } else { statistic.noted(&number.note) },
+        number.value.map_or_else(|| Cell::text(MISSING), |x| Cell::number(shown(x, number.decimals), x)),
+        interval,
+        number.p.map_or_else(Cell::default, |p| Cell::number(p_value(p), p)),
+        number.n.map_or_else(Cell::default, Cell::whole),
+    ]
+}

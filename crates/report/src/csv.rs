@@ -1,0 +1,57 @@
+//! One row a number, for a spreadsheet or R.
+
+use crate::{Sample, StudyReport, numbers};
+
+/// Columns of [`csv`].
+const HEADER: &str = "sample,block,analysis,statistic,value,low,high,level,p,n,note";
+
+/// Every number in full precision, one a row, with a header line; RFC 4180 with `\n` between lines.
+///
+/// `sample` is `screened`, or `everybody` for the same with the excluded; `block` is empty for what is of the whole study.
+pub fn csv(report: &StudyReport) -> String {
+    let mut out = HEADER.to_owned();
+    for number in numbers(report) {
+        let exact = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
+        let sample = match number.sample {
+            Sample::Screened => "screened",
+            Sample::Everybody => "everybody",
+        };
+        let cells = [
+            sample.to_owned(),
+            number.block,
+            number.analysis.to_owned(),
+            number.statistic,
+            exact(number.value),
+            exact(number.interval.map(|i| i.low)),
+            exact(number.interval.map(|i| i.high)),
+            exact(number.interval.map(|i| i.level)),
+            exact(number.p),
+            number.n.map_or_else(String::new, |n| n.to_string()),
+            number.note,
+        ];
+        out.push('\n');
+        out.push_str(&cells.map(|cell| quoted(&cell)).join(","));
+    }
+    out
+}
+
+/// A cell that a spreadsheet takes as text, not as a formula, quoted where needed.
+fn quoted(cell: &str) -> String {
+    let formula = cell.starts_with(['=', '+', '@', '\t', '\r'])
+        || cell.starts_with('-') && cell.parse::<f64>().is_err();
+    let cell = if formula { format!("'{cell}") } else { cell.to_owned() };
+    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn cells_are_quoted_and_no_formula_gets_through() {
+        assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
+        assert_eq!(quoted("=1+1"), "'=1+1");
+        assert_eq!(quoted("-2+cmd"), "'-2+cmd");
+        assert_eq!(quoted("-1.5e-3"), "-1.5e-3");
+    }
+}

@@ -1,0 +1,250 @@
+//! Plots that say it faster than tables.
+
+use crate::StudyReport;
+use crate::document::{Figure, Piece};
+use crate::format::{fixed, percent, range, share};
+use kelir_plot::{Axis, Estimate, Forest, Point, Rule, Series, forest, svg};
+use kelir_stats::inference::Interval;
+use kelir_study::report::{BlockReport, Proportion};
+
+/// Width of every figure, px: on a phone it is shown at six tenths and its letters can still be read.
+const WIDTH: u32 = 620;
+const HEIGHT: u32 = 400;
+
+/// A figure, or a sentence that says why it could not be drawn.
+fn drawn(name: &str, caption: String, picture: Result<String, kelir_plot::PlotError>) -> Piece {
+    match picture {
+        Ok(svg) => Piece::Figure(Figure { name: name.to_owned(), caption, svg }),
+        Err(error) => Piece::Text(format!("No figure of {name}: {error}.")),
+    }
+}
+
+/// Shares of target choices: each block over all its choices, then each pair alone. `None` without answers.
+pub(crate) fn choices(blocks: &[BlockReport]) -> Option<Piece> {
+    let row = |label: String, found: Option<&Proportion>, strong| {
+        let interval = found.map(interval_of);
+        Estimate {
+            label,
+            value: found.map(|p| p.proportion),
+            interval: interval.map(|i| [i.low, i.high]),
+            text: found.zip(interval).map_or("no answers".to_owned(), |(p, i)| share(p.proportion, i)),
+            strong,
+        }
+    };
+    let mut rows = Vec::new();
+    for block in blocks.iter().filter(|b| b.left.is_some()) {
+        let summary = &block.summary;
+        let [a, b] = &summary.conditions;
+        let other = if *a == summary.target { b } else { a };
+        rows.push(row(
+            format!("{}: {} over {other}", summary.id, summary.target),
+            block.analysis.proportion.as_ref(),
+            true,
+        ));
+        if block.by_pair.len() > 1 {
+            rows.extend(
+                block.by_pair.iter().map(|pair| row(format!("   {}", pair.id), pair.target.as_ref(), false)),
+            );
+        }
+    }
+    if rows.is_empty() {
+        return None;
+    }
+    let figure = Forest {
+        title: "Who preferred what".to_owned(),
+        axis: Axis::linear("share of choices").within(0.0, 1.0),
+        rule: Some((0.5, "chance".to_owned())),
+        rows,
+        width: WIDTH,
+    };
+    let caption = "Share of choices of the counted condition with its 95% interval. Orange: a whole block, over all its choices, the interval from resampled \
+         participants. Blue: one pair, Wilson's interval. Dashed: chance.";
+    Some(drawn("choices", caption.to_owned(), forest(&figure)))
+}
+
+fn interval_of(found: &Proportion) -> Interval {
+    let resampled = found.by_participant.as_ref();
+    resampled.map_or(found.wilson, |b| Interval { low: b.low, high: b.high, level: b.level })
+}
+
+/// All conditions on one axis.
+pub(crate) fn scale(report: &StudyReport) -> Option<Piece> {
+    let found = report.report.scale.as_ref()?;
+    let mut conditions = found.conditions.clone();
+    conditions.sort_by(|a, b| b.jod.total_cmp(&a.jod));
+    let rows = conditions.iter().map(|c| Estimate {
+        label: c.condition.clone(),
+        value: Some(c.jod),
+        interval: Some([c.low, c.high]),
+        text: format!("{}, {}", fixed(c.jod, 2), range(c.low, c.high, 2)),
+        strong: false,
+    });
+    let figure = Forest {
+        title: "All conditions on one scale".to_owned(),
+        axis: Axis::linear("JOD; more is chosen more often"),
+        rule: Some((0.0, "mean".to_owned())),
+        rows: rows.collect(),
+        width: WIDTH,
+    };
+    let caption = format!(
+        "Positions in just-objectionable differences: 1 JOD apart is a choice by 75%. Lines: {} intervals from {} resamples of {} participants. Overlapping intervals \
+         are no test: differences are tested in the table.",
+        percent(found.level),
+        found.replicates,
+        found.observers
+    );
+    Some(drawn("scale", caption, forest(&figure)))
+}
+
+/// A block's psychometric function with its data.
+pub(crate) fn psychometric(block: &BlockReport) -> Option<Piece> {
+    let found = block.psychometric.as_ref()?;
+    let data = found.points.iter().filter_map(|point| {
+        let share = point.target.as_ref()?;
+        let interval = Some([share.wilson.low, share.wilson.high]);
+        Some(Point { x: point.level, y: share.proportion, interval, label: None })
+    });
+    let data: Vec<Point> = data.collect();
+    if data.is_empty() {
+        return None;
+    }
+    let mut series =
+        vec![Series { name: String::new(), points: data, line: false, markers: true, dashed: false }];
+    let mut rules = vec![Rule::Horizontal(found.guess, "guessing".to_owned())];
+    if let Some(fit) = &found.fit {
+        let points = fit.curve.iter().map(|p| Point { x: p.level, y: p.share, ..Point::default() });
+        series.push(Series {
+            name: String::new(),
+            points: points.collect(),
+            line: true,
+            markers: false,
+            dashed: false,
+        });
+        rules.push(Rule::Vertical(fit.threshold.value, "threshold".to_owned()));
+    }
+    let level = match &found.asked.unit {
+        Some(unit) => format!("{}, {unit}", found.asked.label),
+        None => found.asked.label.clone(),
+    };
+    let figure = kelir_plot::Figure {
+        title: format!("{}: choices of {} by level", block.summary.id, block.summary.target),
+        x: Axis::linear(level),
+        y: Axis::linear("share of choices").within(0.0, 1.0),
+        series,
+        rules,
+        size: [WIDTH, HEIGHT],
+    };
+    let caption = "Dots: share of choices at each level with Wilson's 95% interval. Curve: the psychometric function where its posterior is highest. Dashed: guessing, and \
+         the threshold, halfway between guessing and lapsing.";
+    Some(drawn(&format!("psychometric-{}", file_name(&block.summary.id)), caption.to_owned(), svg(&figure)))
+}
+
+/// How long answers took: cumulative shares, one line a block.
+pub(crate) fn times(blocks: &[BlockReport]) -> Option<Piece> {
+    let series: Vec<Series> = blocks
+        .iter()
+        .filter(|block| !block.rt_percentiles_ms.is_empty())
+        .map(|block| {
+            let points = block.rt_percentiles_ms.iter().enumerate().map(|(k, ms)| Point {
+                x: ms / 1000.0,
+                y: (k + 1) as f64 / 100.0,
+                ..Point::default()
+            });
+            let name = block.summary.id.clone();
+            Series { name, points: points.collect(), line: true, markers: false, dashed: false }
+        })
+        .collect();
+    if series.is_empty() {
+        return None;
+    }
+    let most = series.iter().flat_map(|s| s.points.last()).map(|p| p.x).fold(0.001, f64::max);
+    let figure = kelir_plot::Figure {
+        title: "How long answers took".to_owned(),
+        x: Axis::linear("response time, s").within(0.0, 1.04 * most),
+        y: Axis::linear("share of answers so far").within(0.0, 1.0),
+        series,
+        rules: vec![Rule::Horizontal(0.5, "median".to_owned())],
+        size: [WIDTH, HEIGHT],
+    };
+    let caption = "Share of answers given within a time, from the 1st to the 99th percentile of each block. Where a line crosses the dashed one lies its median.";
+    Some(drawn("response-times", caption.to_owned(), svg(&figure)))
+}
+
+/// A stimulus with a measured error and answers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Judged<'a> {
+    pub pair: &'a str,
+    pub condition: &'a str,
+    /// RMSE in penumbra, share of full scale.
+    pub rmse: f64,
+    /// Share of choices that preferred it to the other of its pair.
+    pub share: f64,
+    pub interval: Interval,
+}
+
+/// Every stimulus with a measured error and answers.
+pub(crate) fn judged(report: &StudyReport) -> Vec<Judged<'_>> {
+    let mut found = Vec::new();
+    for block in &report.report.blocks {
+        for pair in &block.by_pair {
+            let Some(target) = &pair.target else { continue };
+            for stimulus in report
+                .stimuli
+                .iter()
+                .filter(|s| s.pair == pair.id && block.summary.conditions.contains(&s.condition))
+            {
+                let Some(rmse) = stimulus.penumbra_rmse() else { continue };
+                let Interval { low, high, level } = target.wilson;
+                let (share, interval) = if stimulus.condition == block.summary.target {
+                    (target.proportion, target.wilson)
+                } else {
+                    (1.0 - target.proportion, Interval { low: 1.0 - high, high: 1.0 - low, level })
+                };
+                found.push(Judged { pair: &pair.id, condition: &stimulus.condition, rmse, share, interval });
+            }
+        }
+    }
+    found
+}
+
+/// The physical error of each stimulus against the share that preferred it.
+pub(crate) fn errors(report: &StudyReport) -> Option<Piece> {
+    let all = judged(report);
+    if all.is_empty() {
+        return None;
+    }
+    let mut conditions: Vec<&str> = all.iter().map(|j| j.condition).collect();
+    conditions.sort_unstable();
+    conditions.dedup();
+    let series = conditions.iter().map(|condition| {
+        let points = all.iter().filter(|j| j.condition == *condition).map(|j| Point {
+            x: j.rmse,
+            y: j.share,
+            interval: Some([j.interval.low, j.interval.high]),
+            label: Some(j.pair.to_owned()),
+        });
+        Series {
+            name: (*condition).to_owned(),
+            points: points.collect(),
+            line: false,
+            markers: true,
+            dashed: false,
+        }
+    });
+    let figure = kelir_plot::Figure {
+        title: "Physical error and preference".to_owned(),
+        x: Axis::log10("RMSE in penumbra, share of full scale (log axis)"),
+        y: Axis::linear("share that preferred it").within(0.0, 1.0),
+        series: series.collect(),
+        rules: vec![Rule::Horizontal(0.5, "chance".to_owned())],
+        size: [WIDTH, HEIGHT],
+    };
+    let caption = "Each stimulus: its measured error against its reference (of simulated photographs before the camera), and the share of participants who preferred it to the other \
+         of its pair, with Wilson's 95% interval. Labels name pairs, colours and marks conditions.";
+    Some(drawn("errors", caption.to_owned(), svg(&figure)))
+}
+
+/// An id as a file's name: study files allow nothing dangerous in ids, but a name must not depend on that.
+fn file_name(id: &str) -> String {
+    id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '-' }).collect()
+}

@@ -1,0 +1,190 @@
+//! What was asked, what was found, and what was not shown.
+
+use crate::StudyReport;
+use crate::document::{Piece, Section};
+use crate::format::{count, fixed, list, p_equals, percent, significant};
+use kelir_stats::inference::Bounds;
+use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER};
+
+/// The report's first section.
+pub(crate) fn section(report: &StudyReport) -> Section {
+    let mut pieces = Vec::new();
+    if let Some((row, what)) = &report.chain.broken {
+        pieces.push(Piece::Warning(format!(
+            "Stored answer {row} is not what was written: {what}. Do not use these data before you know why."
+        )));
+    }
+    pieces.push(Piece::Heading("Asked".to_owned()));
+    pieces.push(Piece::List(asked(report)));
+    pieces.push(Piece::Heading("Found".to_owned()));
+    pieces.push(Piece::List(found(report)));
+    if !report.is_empty() {
+        pieces.push(Piece::Heading("Not shown".to_owned()));
+        pieces.push(Piece::List(not_shown(report)));
+    }
+    Section::new("In short", pieces)
+}
+
+fn asked(report: &StudyReport) -> Vec<String> {
+    let comparisons = report.report.blocks.iter().map(|block| {
+        let [a, b] = &block.summary.conditions;
+        format!("{}: {a} against {b}, {}.", block.summary.title, count(block.summary.pairs as u64, "pair"))
+    });
+    std::iter::once(format!("“{}”", report.question)).chain(comparisons).collect()
+}
+
+/// The other condition of a block.
+fn other(block: &BlockReport) -> &str {
+    let [a, b] = &block.summary.conditions;
+    if *a == block.summary.target { b } else { a }
+}
+
+/// Whether both tests of equivalence succeed.
+fn equivalent(block: &BlockReport) -> bool {
+    let tests = &block.analysis.equivalence;
+    !tests.is_empty() && tests.iter().all(|test| test.p < ALPHA)
+}
+
+fn significant_after_holm(block: &BlockReport) -> bool {
+    block.p_holm.is_some_and(|p| p < ALPHA)
+}
+
+fn found(report: &StudyReport) -> Vec<String> {
+    if report.is_empty() {
+        return vec!["Nothing yet: nobody has answered. This report fills in as answers come.".to_owned()];
+    }
+    let mut lines: Vec<String> = report.report.blocks.iter().map(of_block).collect();
+    if let Some(scale) = &report.report.scale {
+        let mut order: Vec<_> = scale.conditions.iter().collect();
+        order.sort_by(|a, b| b.jod.total_cmp(&a.jod));
+        let names: Vec<String> =
+            order.iter().map(|c| format!("{} ({})", c.condition, fixed(c.jod, 2))).collect();
+        let sure = scale.differences.iter().filter(|d| d.p < ALPHA).count();
+        lines.push(format!(
+            "On one scale, in JOD, from most to least often chosen: {}. {} of {} differences have p < {ALPHA}, uncorrected.",
+            list(&names),
+            sure,
+            scale.differences.len()
+        ));
+    }
+    for block in &report.report.blocks {
+        let Some(fit) = block.psychometric.as_ref().and_then(|p| p.fit.as_ref()) else { continue };
+        let t = &fit.threshold;
+        lines.push(format!(
+            "{}: threshold at {} (95% posterior interval {} to {}).",
+            block.summary.title,
+            significant(t.value, 4),
+            significant(t.low, 4),
+            significant(t.high, 4)
+        ));
+    }
+    lines
+}
+
+fn of_block(block: &BlockReport) -> String {
+    let (summary, analysis) = (&block.summary, &block.analysis);
+    let (title, target, other) = (&summary.title, &summary.target, other(block));
+    let Some(share) = &analysis.proportion else {
+        return format!("{title}: no participant has answered every pair yet.");
+    };
+    let interval =
+        share.by_participant.as_ref().map_or([share.wilson.low, share.wilson.high], |b| [b.low, b.high]);
+    let chose = format!(
+        "{title}: {} chose {target} over {other} in {} of {} (95% interval {} to {})",
+        count(summary.n, "participant"),
+        percent(share.proportion),
+        count(share.trials, "choice"),
+        percent(interval[0]),
+        percent(interval[1])
+    );
+    let (Some(t), Some(df), Some(p), Some(mean)) = (summary.t, summary.df, summary.p, summary.mean) else {
+        let why = summary.note.as_deref().unwrap_or("t is not defined");
+        return format!("{chose}; no test: {why}.");
+    };
+    let holm = match block.p_holm {
+        Some(corrected) if corrected != p => format!(", after Holm {}", p_equals(corrected)),
+        _ => String::new(),
+    };
+    let test = format!("t({df}) = {}, {}{holm}", fixed(t, 3), p_equals(p));
+    let way = if mean > summary.mu { "more" } else { "less" };
+    if significant_after_holm(block) {
+        let g = analysis.effect.as_ref().map_or(String::new(), |e| format!(", g = {}", fixed(e.g, 2)));
+        format!("{chose}: {way} often than half the time, {test}{g}.")
+    } else if equivalent(block) {
+        format!(
+            "{chose}: not significantly different from half the time, {test}, and equivalent to it within both bounds asked for."
+        )
+    } else {
+        format!("{chose}: not significantly different from half the time, {test}.")
+    }
+}
+
+fn not_shown(report: &StudyReport) -> Vec<String> {
+    let mut lines = Vec::new();
+    for block in &report.report.blocks {
+        let (summary, analysis) = (&block.summary, &block.analysis);
+        let (title, [a, b]) = (&summary.title, &summary.conditions);
+        let Some(p) = summary.p else { continue };
+        if p < ALPHA && !significant_after_holm(block) {
+            lines.push(format!(
+                "{title}: a difference. The test alone has {}, but not after correction for {} blocks.",
+                p_equals(p),
+                report.report.blocks.iter().filter(|b| b.p_holm.is_some()).count()
+            ));
+        }
+        if significant_after_holm(block) || equivalent(block) {
+            continue;
+        }
+        let tests: Vec<String> = analysis
+            .equivalence
+            .iter()
+            .map(|test| {
+                let bounds = match test.bounds {
+                    Bounds::Points(points) => format!("±{points} choices"),
+                    Bounds::Sd(sd) => format!("±{sd} SD"),
+                };
+                let is = if test.p < ALPHA { "is shown" } else { "is not" };
+                format!("equivalence within {bounds} {is} ({})", p_equals(test.p))
+            })
+            .collect();
+        let mut line = format!(
+            "{title}: that participants cannot tell {a} from {b}. Not significant is not the same: {}",
+            list(&tests)
+        );
+        if let Some(bayes) = &analysis.bayes {
+            let (ratio, hypothesis) =
+                if bayes.bf01 >= 1.0 { (bayes.bf01, "no effect") } else { (bayes.bf10, "an effect") };
+            line.push_str(&format!(
+                "; the data are {} times likelier under {hypothesis}",
+                significant(ratio, 2)
+            ));
+        }
+        if let Some(plan) = &analysis.detectable {
+            line.push_str(&format!(
+                "; with {} a true effect below d = {} is missed more than one time in {}",
+                count(plan.n, "participant"),
+                fixed(plan.d, 2),
+                fixed(1.0 / (1.0 - DETECTION_POWER), 0)
+            ));
+        }
+        lines.push(line + ".");
+    }
+    if let Some(everybody) = &report.blocks_with_excluded {
+        for (screened, all) in report.report.blocks.iter().zip(everybody) {
+            if significant_after_holm(screened) != significant_after_holm(all) {
+                lines.push(format!(
+                    "{}: a result that does not depend on who is excluded. With everybody, p after Holm is {}; with the study's rules, {}.",
+                    screened.summary.title,
+                    all.p_holm.map_or("not defined".to_owned(), crate::format::p_value),
+                    screened.p_holm.map_or("not defined".to_owned(), crate::format::p_value)
+                ));
+            }
+        }
+    }
+    let pairs: usize = report.report.blocks.iter().map(|b| b.summary.pairs).sum();
+    lines.push(format!(
+        "Anything about other scenes: intervals and tests speak of other participants who see these {}.",
+        count(pairs as u64, "pair")
+    ));
+    lines
+}

@@ -1,0 +1,141 @@
+//! What came of a study, written: for the terminal, a spreadsheet, a browser, a paper.
+//!
+//! [`StudyReport`] holds every number; [`Document`] is what is said of them, once, and [`text`], [`html`] and [`markdown`] only write it
+//! down. [`csv`] has one row a number. Pure: strings in, strings out, the same bytes for the same answers.
+
+mod blocks;
+mod csv;
+mod document;
+mod figures;
+mod format;
+mod headline;
+mod html;
+mod markdown;
+mod numbers;
+mod sections;
+mod text;
+
+pub use csv::csv;
+pub use document::{Cell, Column, Document, Figure, Piece, Row, Section, Table};
+pub use html::html;
+pub use markdown::{Figures, Markdown, markdown};
+pub use numbers::{Number, Sample, numbers};
+pub use text::text;
+
+use kelir_stats::pairwise::ScaleIntervals;
+use kelir_stats::paper::Replication;
+use kelir_study::report::{BlockReport, Report};
+use kelir_study::screening::Exclusion;
+use kelir_study::{Screening, StudyDefinition};
+use serde::Serialize;
+use serde_json::Value;
+
+/// Everything kelir can say of one version of a study, as a report or a paper's methods and results need it.
+#[derive(Clone, Debug, Serialize)]
+pub struct StudyReport {
+    /// Study's id.
+    pub study: String,
+    /// Study's title.
+    pub title: String,
+    /// The question over every pair.
+    pub question: String,
+    /// Version of the study that this is of.
+    pub config_hash: String,
+    /// Version of kelir that judged.
+    pub kelir_version: String,
+    /// When the first and the last answer came, ISO-8601 UTC; null without answers.
+    pub answered: Option<[String; 2]>,
+    /// How many people take part.
+    pub participants: Participants,
+    /// Who is left out by the study's rules of screening, and why.
+    pub excluded: Vec<Excluded>,
+    /// The study's rules of screening.
+    pub screening: Screening,
+    /// Blocks, scale and methods, without the excluded.
+    #[serde(flatten)]
+    pub report: Report,
+    /// The blocks with everybody; null when nobody is excluded.
+    pub blocks_with_excluded: Option<Vec<BlockReport>>,
+    /// The scale with everybody; null when nobody is excluded or there is none.
+    pub scale_with_excluded: Option<ScaleIntervals>,
+    /// What was shown, with how it was made and its measured error.
+    pub stimuli: Vec<Stimulus>,
+    /// Other versions of the study that have sessions; their answers are not in here.
+    pub other_versions: Vec<OtherVersion>,
+    /// Whether the stored answers are what was written: the chain over all studies of the data folder.
+    pub chain: Chain,
+    /// The paper's own tests, computed again, for the study that repeats them.
+    pub paper: Option<Replication>,
+    /// The study's definition, every value of it.
+    pub design: StudyDefinition,
+}
+
+/// How many people take part in one version of a study.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Participants {
+    /// Sessions ever begun.
+    pub started: u64,
+    /// Not finished, and seen within the idle time.
+    pub in_progress: u64,
+    /// Finished.
+    pub completed: u64,
+}
+
+/// A participant who is left out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Excluded {
+    /// Session's id.
+    pub session_id: String,
+    /// Every reason there is.
+    pub reasons: Vec<Exclusion>,
+}
+
+/// A version of the study that the results leave out.
+#[derive(Clone, Debug, Serialize)]
+pub struct OtherVersion {
+    /// Hash of its definition.
+    pub config_hash: String,
+    /// Sessions begun with it.
+    pub sessions: u64,
+}
+
+/// What one pair of a study shows under one condition.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stimulus {
+    /// Pair's id.
+    pub pair: String,
+    /// Condition's name.
+    pub condition: String,
+    /// Hash of the stimulus.
+    pub sha256: String,
+    /// How it was made, with its measured error.
+    pub provenance: Value,
+}
+
+impl Stimulus {
+    /// Its root-mean-square error in penumbra against its reference, in units of the brightest unshadowed point; `None` where
+    /// nothing was measured, or where it is its own reference.
+    pub fn penumbra_rmse(&self) -> Option<f64> {
+        self.provenance.pointer("/error/penumbra/rmse").and_then(Value::as_f64).filter(|rmse| *rmse > 0.0)
+    }
+}
+
+/// What checking the stored answers found.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Chain {
+    /// Rows that were checked, up to and including a broken one.
+    pub rows: u64,
+    /// Hash of the last good row; noting it elsewhere also proves that no later rows were cut off.
+    pub head: String,
+    /// Number of the first row that is not what was written, and what is wrong with it.
+    pub broken: Option<(i64, String)>,
+    /// Payloads that were blanked by a withdrawal.
+    pub blanked: u64,
+}
+
+impl StudyReport {
+    /// Whether anybody has answered anything that is analysed.
+    pub fn is_empty(&self) -> bool {
+        self.blocks_with_excluded.as_ref().unwrap_or(&self.report.blocks).iter().all(|b| b.left.is_none())
+    }
+}

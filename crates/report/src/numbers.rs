@@ -1,0 +1,379 @@
+//! Every number of a report, one at a time: what the tables show and the CSV holds.
+
+use crate::StudyReport;
+use kelir_stats::clustered::{Bootstrap, Coefficient};
+use kelir_stats::inference::{Bounds, Interval};
+use kelir_stats::pairwise::ScaleIntervals;
+use kelir_study::report::{ALPHA, BlockReport, LEVEL, Parameter, Proportion, PsychometricReport};
+
+/// Whose answers a number is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sample {
+    /// Those who pass the study's rules of screening.
+    Screened,
+    /// Everybody, where somebody is left out.
+    Everybody,
+}
+
+/// One number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// Whose answers it is of.
+    pub sample: Sample,
+    /// Block's id; empty for what is of the whole study.
+    pub block: String,
+    /// What was done.
+    pub analysis: &'static str,
+    /// What it is, with its unit.
+    pub statistic: String,
+    /// The number; `None` where only a p is given.
+    pub value: Option<f64>,
+    /// Its interval.
+    pub interval: Option<Interval>,
+    /// The p-value that belongs to it.
+    pub p: Option<f64>,
+    /// How many participants or choices it rests on; the note says of what when it is not participants.
+    pub n: Option<u64>,
+    /// What a reader should know.
+    pub note: String,
+    /// Decimals that mean something.
+    pub decimals: usize,
+}
+
+/// Every number of the report.
+pub fn numbers(report: &StudyReport) -> Vec<Number> {
+    let mut all = Vec::new();
+    let people = &report.participants;
+    for (statistic, value) in [
+        ("sessions begun (participants)", people.started),
+        ("in progress (participants)", people.in_progress),
+        ("completed (participants)", people.completed),
+        ("excluded by the study's rules (participants)", report.excluded.len() as u64),
+    ] {
+        all.push(Rows::of(Sample::Screened, "", "participants").whole(statistic, value));
+    }
+    let samples = [
+        (Sample::Screened, Some(&report.report.blocks), report.report.scale.as_ref()),
+        (Sample::Everybody, report.blocks_with_excluded.as_ref(), report.scale_with_excluded.as_ref()),
+    ];
+    for (sample, blocks, scale) in samples {
+        for block in blocks.into_iter().flatten() {
+            all.extend(of_block(sample, block));
+            all.extend(block.psychometric.iter().flat_map(|p| psychometric(sample, &block.summary.id, p)));
+        }
+        all.extend(scale.into_iter().flat_map(|scale| of_scale(sample, scale)));
+    }
+    if let Some(consistency) = &report.report.consistency {
+        let rows = Rows::of(Sample::Screened, "", "consistency");
+        let triads = &consistency.triads;
+        all.push(Number {
+            n: Some(triads.triads),
+            ..rows.whole("circular triads (of all triads)", triads.circular)
+        });
+        if let Some(zeta) = triads.consistence {
+            all.push(rows.number("mean coefficient of consistence (0 to 1)", zeta, 3));
+        }
+        let odd = consistency.odd.len() as u64;
+        all.push(Number {
+            n: Some(consistency.observers),
+            ..rows.whole("observers far from the others' scale (participants)", odd)
+        });
+    }
+    for stimulus in &report.stimuli {
+        if let Some(rmse) = stimulus.penumbra_rmse() {
+            let name = format!(
+                "RMSE in penumbra of {}, {} (share of full scale)",
+                stimulus.pair, stimulus.condition
+            );
+            all.push(Rows::of(Sample::Screened, "", "stimulus error").number(name, rmse, 6));
+        }
+    }
+    all
+}
+
+/// What numbers of one analysis have in common.
+#[derive(Clone, Copy)]
+struct Rows<'a> {
+    sample: Sample,
+    block: &'a str,
+    analysis: &'static str,
+}
+
+impl<'a> Rows<'a> {
+    fn of(sample: Sample, block: &'a str, analysis: &'static str) -> Rows<'a> {
+        Rows { sample, block, analysis }
+    }
+
+    fn named(self, analysis: &'static str) -> Rows<'a> {
+        Rows { analysis, ..self }
+    }
+
+    fn number(self, statistic: impl Into<String>, value: f64, decimals: usize) -> Number {
+        Number {
+            sample: self.sample,
+            block: self.block.to_owned(),
+            analysis: self.analysis,
+            statistic: statistic.into(),
+            value: Some(value),
+            interval: None,
+            p: None,
+            n: None,
+            note: String::new(),
+            decimals,
+        }
+    }
+
+    fn whole(self, statistic: impl Into<String>, value: u64) -> Number {
+        self.number(statistic, value as f64, 0)
+    }
+
+    /// A share with the interval that is right for it: from resampled participants where they gave several answers.
+    fn share(self, statistic: impl Into<String>, share: &Proportion) -> Number {
+        let interval = share.by_participant.as_ref().map_or(share.wilson, resampled);
+        self.number(statistic, share.proportion, 3).within(interval).of_n(share.trials, "n: choices")
+    }
+
+    fn coefficient(self, statistic: &str, c: &Coefficient) -> Number {
+        let interval = Interval { low: c.low, high: c.high, level: LEVEL };
+        self.number(statistic, c.estimate, 3).within(interval).with_p(c.p)
+    }
+}
+
+impl Number {
+    fn within(self, interval: Interval) -> Number {
+        Number { interval: Some(interval), ..self }
+    }
+
+    fn with_p(self, p: f64) -> Number {
+        Number { p: Some(p), ..self }
+    }
+
+    fn of_n(self, n: u64, note: &str) -> Number {
+        Number { n: Some(n), note: note.to_owned(), ..self }
+    }
+
+    fn noted(self, note: impl Into<String>) -> Number {
+        Number { note: note.into(), ..self }
+    }
+}
+
+fn resampled(found: &Bootstrap) -> Interval {
+    Interval { low: found.low, high: found.high, level: found.level }
+}
+
+/// Every number of one block but its psychometric function's.
+pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
+    let (summary, analysis) = (&block.summary, &block.analysis);
+    let target = &summary.target;
+    let rows = |name| Rows::of(sample, &summary.id, name);
+    let mut all = Vec::new();
+
+    let counted = rows("counts");
+    all.push(counted.whole("answered every pair (participants)", summary.n));
+    all.push(counted.whole("left out: answered some pairs only (participants)", summary.incomplete));
+    for (choices, people) in &summary.counts {
+        all.push(
+            counted.whole(
+                format!("chose {target} {choices} of {} times (participants)", summary.pairs),
+                *people,
+            ),
+        );
+    }
+
+    let t = rows("t-test");
+    let mean = summary
+        .mean
+        .map(|x| t.number(format!("mean choices of {target} (of {} pairs)", summary.pairs), x, 4));
+    all.extend(mean.map(|row| Number { n: Some(summary.n), ..row }));
+    all.extend(summary.sd.map(|x| t.number("standard deviation (choices)", x, 4)));
+    all.push(t.number("expected of who cannot tell (choices)", summary.mu, 1));
+    if let (Some(value), Some(df), Some(p)) = (summary.t, summary.df, summary.p) {
+        all.push(Number { n: Some(summary.n), ..t.number(format!("t (df = {df})"), value, 4).with_p(p) });
+        if let Some(p_holm) = block.p_holm {
+            all.push(t.number("t, p corrected by Holm for all blocks", value, 4).with_p(p_holm));
+        }
+    }
+
+    let effects = rows("effect size");
+    if let Some(effect) = &analysis.effect {
+        all.push(effects.number("Cohen's d (SD)", effect.d, 3).within(effect.d_interval));
+        all.push(effects.number("Hedges' g (SD)", effect.g, 3).within(effect.g_interval));
+    }
+    let offset = summary.mean.map(|mean| mean - summary.mu);
+    for found in &analysis.equivalence {
+        let bounds = match found.bounds {
+            Bounds::Points(points) => format!("±{points} choices"),
+            Bounds::Sd(sd) => format!("±{sd} SD"),
+        };
+        let name = format!("mean − chance, equivalent within {bounds}? (choices)");
+        let row = offset.map(|x| rows("equivalence (TOST)").number(name, x, 4));
+        all.extend(row.map(|row| {
+            row.within(found.interval_90)
+                .with_p(found.p)
+                .noted("p below 0.05 shows equivalence; 90% interval")
+        }));
+    }
+    if let Some(bayes) = &analysis.bayes {
+        let row = rows("Bayes factor").number("BF₀₁, for no effect against one (ratio)", bayes.bf01, 3);
+        all.push(
+            row.noted("above 3 some, above 10 strong evidence for no effect; below 1/3 and 1/10 against it"),
+        );
+    }
+
+    let ranks = rows("without normality");
+    if let Some(sign) = &analysis.sign {
+        let row = ranks.whole("sign test: above chance (participants)", sign.successes).with_p(sign.p);
+        all.push(row.of_n(sign.n, "n: participants not at chance"));
+    }
+    if let Some(wilcoxon) = &analysis.wilcoxon {
+        let row = ranks.number("Wilcoxon's V (sum of ranks)", wilcoxon.v, 1).with_p(wilcoxon.p);
+        all.push(row.of_n(wilcoxon.n, "n: participants not at chance"));
+    }
+
+    let choices = rows("all choices");
+    if let Some(share) = &analysis.proportion {
+        let by_participant = if share.by_participant.is_some() {
+            "interval from resampled participants; n: choices"
+        } else {
+            "n: choices"
+        };
+        all.push(choices.share(format!("share of {target} (proportion)"), share).noted(by_participant));
+        if share.by_participant.is_some() && summary.pairs > 1 {
+            let row = choices
+                .number("the same, Wilson's interval (proportion)", share.proportion, 3)
+                .within(share.wilson);
+            all.push(row.of_n(share.trials, "n: choices, wrongly taken as independent"));
+        }
+    }
+    if let Some(binomial) = &analysis.binomial {
+        let note = if summary.pairs > 1 { "n: choices, wrongly taken as independent" } else { "n: choices" };
+        let row = choices.whole(format!("exact binomial test: chose {target} (choices)"), binomial.successes);
+        all.push(row.with_p(binomial.p).of_n(binomial.n, note));
+    }
+
+    let clustered = rows("clustered choices");
+    if let Some(found) = &analysis.intraclass {
+        all.push(Number {
+            n: Some(found.participants),
+            ..clustered.number("intraclass correlation (−1 to 1)", found.icc, 3)
+        });
+        all.push(clustered.number("design effect (variance ratio)", found.design_effect, 3));
+    }
+    if let Some(c) = analysis.robust_logit.as_ref().and_then(|l| l.coefficients.first()) {
+        all.push(clustered.coefficient("log odds, cluster-robust (logit)", c));
+    }
+    if let Some(found) = &analysis.mixed_logit {
+        all.extend(
+            found
+                .coefficients
+                .first()
+                .map(|c| clustered.coefficient("log odds, random intercept (logit)", c)),
+        );
+        let row =
+            clustered.number("SD of participants' log odds (logit)", found.sigma, 3).with_p(found.sigma_p);
+        all.push(row);
+    }
+
+    let power = rows("power");
+    for plan in &analysis.power {
+        let row = power.number(format!("power for d = {} (probability)", plan.d), plan.power, 3);
+        all.push(row.of_n(plan.n, &format!("two-tailed, α = {ALPHA}")));
+    }
+    all.extend(analysis.detectable.map(|plan| power.number("effect found with 80% power (SD)", plan.d, 3)));
+
+    for pair in &block.by_pair {
+        all.extend(
+            pair.target.as_ref().map(|share| {
+                rows("pairs").share(format!("{}: share of {target} (proportion)", pair.id), share)
+            }),
+        );
+    }
+    all.extend(block.left.as_ref().map(|left| {
+        rows("sides")
+            .share("share of the left picture (proportion)", left)
+            .noted("n: choices; far from 0.5: a bias of side")
+    }));
+    if let Some(times) = &block.rt_ms {
+        let row = rows("response time");
+        for (name, ms) in [
+            ("first quartile (ms)", times.q1),
+            ("median (ms)", times.median),
+            ("third quartile (ms)", times.q3),
+        ] {
+            all.push(row.number(name, ms, 0).of_n(times.n, "n: answers"));
+        }
+    }
+    all
+}
+
+/// Every number of a psychometric function.
+pub(crate) fn psychometric(sample: Sample, block: &str, found: &PsychometricReport) -> Vec<Number> {
+    let unit = match &found.asked.unit {
+        Some(unit) => format!("{}, {unit}", found.asked.label),
+        None => found.asked.label.clone(),
+    };
+    let rows = Rows::of(sample, block, "psychometric function");
+    let mut all = Vec::new();
+    for point in &found.points {
+        all.extend(
+            point
+                .target
+                .as_ref()
+                .map(|share| rows.share(format!("share of target at {} (proportion)", point.level), share)),
+        );
+    }
+    let Some(fit) = &found.fit else { return all };
+    let posterior = |name: String, p: &Parameter| {
+        let interval = Interval { low: p.low, high: p.high, level: LEVEL };
+        let note =
+            if p.on_edge { "posterior interval; not bounded by the data" } else { "posterior interval" };
+        rows.number(name, p.value, 4).within(interval).noted(note)
+    };
+    all.push(posterior(format!("threshold, F = ½ ({unit})"), &fit.threshold));
+    all.push(posterior(format!("width, F = 5% to 95% ({unit})"), &fit.width));
+    all.push(posterior("lapse rate (proportion)".to_owned(), &fit.lapse));
+    all.push(posterior("overdispersion η (0 to 1)".to_owned(), &fit.eta));
+    if let Some(b) = &fit.threshold_by_participant {
+        let row = rows.number(format!("threshold, maximum likelihood ({unit})"), b.estimate, 4);
+        all.push(row.within(resampled(b)).noted("interval from resampled participants"));
+    }
+    for at in &fit.at {
+        let name = format!("level at a share of {} ({unit})", at.share);
+        let interval = at.low.zip(at.high).map(|(low, high)| Interval { low, high, level: LEVEL });
+        all.extend(
+            at.level
+                .map(|level| Number { interval, ..rows.number(name, level, 4) }.noted("posterior interval")),
+        );
+    }
+    if let Some(goodness) = &fit.goodness {
+        let row = rows.number("deviance", goodness.deviance, 3).with_p(goodness.p_simulated);
+        all.push(row.of_n(goodness.simulations as u64, "n: simulated observers"));
+    }
+    all
+}
+
+/// Every number of a scale.
+pub(crate) fn of_scale(sample: Sample, found: &ScaleIntervals) -> Vec<Number> {
+    let rows = Rows::of(sample, "", "scale");
+    let within = |low, high| Interval { low, high, level: found.level };
+    let observers = Some(found.observers as u64);
+    let mut all: Vec<Number> = found
+        .conditions
+        .iter()
+        .map(|c| Number {
+            n: observers,
+            ..rows.number(format!("{} (JOD)", c.condition), c.jod, 3).within(within(c.low, c.high))
+        })
+        .collect();
+    all.extend(found.differences.iter().map(|d| {
+        let row = rows.named("scale, differences").number(format!("{} − {} (JOD)", d.a, d.b), d.jod, 3);
+        row.within(within(d.low, d.high)).with_p(d.p).noted("p not corrected for the number of differences")
+    }));
+    let fit = &found.scale;
+    if fit.deviance_df > 0 {
+        let row =
+            rows.named("scale, fit").number(format!("deviance (df = {})", fit.deviance_df), fit.deviance, 3);
+        all.push(row.with_p(fit.deviance_p).noted("small p: one axis does not hold the choices"));
+    }
+    all
+}

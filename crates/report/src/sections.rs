@@ -1,0 +1,380 @@
+//! The sections of a report, in order.
+
+use crate::blocks::{self, table};
+use crate::document::{Cell, Piece, Row, Section, Table};
+use crate::format::{MISSING, count, fixed, p_value, percent, range, share, significant};
+use crate::numbers::{Sample, of_scale};
+use crate::{StudyReport, figures, headline};
+use kelir_study::screening::Exclusion;
+use kelir_study::{Condition, Kind};
+
+/// Everything there is to say.
+pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
+    let mut sections = vec![headline::section(report)];
+    if let Some(figure) = figures::choices(&report.report.blocks) {
+        sections.push(Section {
+            title: "Who preferred what".to_owned(),
+            pieces: vec![figure],
+            reference: true,
+        });
+    }
+    sections.push(participants(report));
+    sections.push(design(report));
+    sections.extend(report.report.blocks.iter().map(blocks::section));
+    sections.extend(scale(report));
+    sections.extend(times(report));
+    sections.extend(errors(report));
+    sections.extend(both_ways(report));
+    sections.extend(paper(report));
+    sections.push(methods(report));
+    sections.push(data(report));
+    sections.push(citation(report));
+    sections
+}
+
+fn participants(report: &StudyReport) -> Section {
+    let people = &report.participants;
+    let mut pieces = vec![Piece::Text(format!(
+        "{} began, {} are in progress, {} finished.{}",
+        count(people.started, "participant"),
+        people.in_progress,
+        people.completed,
+        report.answered.as_ref().map_or(String::new(), |[first, last]| format!(
+            " The first answer came at {first}, the last at {last}."
+        ))
+    ))];
+    let others: u64 = report.other_versions.iter().map(|v| v.sessions).sum();
+    if others > 0 {
+        pieces.push(Piece::Warning(format!(
+            "{} belong to {} of the study and are not in this report.",
+            count(others, "more session"),
+            count(report.other_versions.len() as u64, "other version")
+        )));
+    }
+    if report.excluded.is_empty() {
+        let rules = report.screening == kelir_study::Screening::default();
+        let why = if rules {
+            "The study file states no rules of exclusion."
+        } else {
+            "Nobody broke the study's rules of exclusion."
+        };
+        pieces.push(Piece::Text(format!("Nobody is excluded. {why}")));
+    } else {
+        let rows = report.excluded.iter().map(|excluded| {
+            let reasons: Vec<String> = excluded.reasons.iter().map(reason).collect();
+            Row::Cells(vec![Cell::text(&excluded.session_id), Cell::text(reasons.join("; "))])
+        });
+        let caption = format!(
+            "{} excluded by the study's rules, which were stated before there were answers.",
+            count(report.excluded.len() as u64, "participant")
+        );
+        pieces.push(Piece::Table(Table::new(caption, &["session", "reason"], rows.collect())));
+    }
+    Section::new("Participants", pieces)
+}
+
+fn reason(exclusion: &Exclusion) -> String {
+    let trials_of = |n: &u32, what: &str| count(u64::from(*n), what);
+    match exclusion {
+        Exclusion::TooFast { trials, allowed } => {
+            format!("{} too fast, {allowed} allowed", trials_of(trials, "answer"))
+        }
+        Exclusion::FailedCatchTrials { trials, allowed } => {
+            format!("{} failed, {allowed} allowed", trials_of(trials, "catch trial"))
+        }
+        Exclusion::StraightLining { trials } => {
+            format!("the same side in all {}", trials_of(trials, "trial"))
+        }
+        Exclusion::Incomplete { answered, trials } => {
+            format!("{answered} of {} answered", trials_of(trials, "trial"))
+        }
+    }
+}
+
+fn design(report: &StudyReport) -> Section {
+    let study = &report.design;
+    let rows = study.blocks.iter().map(|block| {
+        let title =
+            if block.catch { format!("{} (catch, not analysed)", block.title) } else { block.title.clone() };
+        let kind = match block.kind {
+            Kind::Still => "stills",
+            Kind::Animation => "animations",
+        };
+        let [a, b] = &block.conditions;
+        Row::Cells(vec![
+            Cell::text(title),
+            Cell::text(kind),
+            Cell::text(format!("{a} / {b}")),
+            Cell::text(&block.target),
+            Cell::whole(block.pairs.len() as u64),
+        ])
+    });
+    let blocks = Table::new("", &["block", "shown as", "conditions", "counted", "pairs#"], rows.collect());
+    let rows = study.conditions.iter().map(|(name, condition)| {
+        let made = match condition {
+            Condition::Rendered { technique, knobs, camera } => {
+                let settings = |map: &std::collections::BTreeMap<String, serde_json::Value>| {
+                    map.iter().map(|(k, v)| format!(", {k} {v}")).collect::<String>()
+                };
+                let camera = camera
+                    .as_ref()
+                    .map_or(String::new(), |c| format!("; through a simulated camera{}", settings(c)));
+                format!("drawn by {technique}{}{camera}", settings(knobs))
+            }
+            Condition::Files { files } => format!("picture files ({})", files.len()),
+        };
+        Row::Cells(vec![Cell::text(name), Cell::text(made)])
+    });
+    let conditions = Table::new("", &["condition", "made by"], rows.collect());
+    let [width, height] = study.size;
+    let text = format!(
+        "“{}”, asked of {} in {}, two at a time side by side, {width} × {height} pixels each; one of the two had to be chosen.",
+        study.question,
+        count(study.trial_count() as u64, "pair"),
+        count(study.blocks.len() as u64, "block")
+    );
+    Section::new("Design", vec![Piece::Text(text), Piece::Table(blocks), Piece::Table(conditions)])
+}
+
+fn scale(report: &StudyReport) -> Option<Section> {
+    let judged = &report.report;
+    let title = "All conditions on one scale";
+    let Some(found) = &judged.scale else {
+        // Two conditions have no scale, and nobody misses it.
+        let names: std::collections::BTreeSet<&String> =
+            judged.blocks.iter().flat_map(|b| &b.summary.conditions).collect();
+        let note = judged.scale_note.as_ref().filter(|_| names.len() > 2 && !report.is_empty())?;
+        return Some(Section::new(title, vec![Piece::Text(note.clone())]));
+    };
+    let mut pieces = Vec::new();
+    pieces.extend(figures::scale(report));
+    if found.scale.deviance_df > 0 && found.scale.deviance_p < 0.05 {
+        pieces.push(Piece::Warning(
+            "One axis does not hold these choices (small p of the deviance): how two conditions compare depends on more than their positions.".to_owned(),
+        ));
+    }
+    pieces.push(Piece::Table(table("", &of_scale(Sample::Screened, found))));
+    if let Some(consistency) = &judged.consistency {
+        let triads = &consistency.triads;
+        if triads.triads > 0 {
+            let mean = triads
+                .consistence
+                .map_or(String::new(), |z| format!("; mean coefficient of consistence {}", fixed(z, 2)));
+            pieces.push(Piece::Text(format!(
+                "Circular triads: {} of {} ({}; tossing a coin makes 25%){mean}.",
+                triads.circular,
+                triads.triads,
+                percent(triads.circular as f64 / triads.triads as f64)
+            )));
+        }
+        if consistency.observers > 0 {
+            let names: Vec<&str> = consistency.odd.iter().map(|o| o.id.as_str()).collect();
+            pieces.push(Piece::Text(if names.is_empty() {
+                format!("No participant of {} chooses far off the scale of all the others.", consistency.observers)
+            } else {
+                format!(
+                    "{} of {} choose far off the scale of all the others and are worth a look; they are not excluded: {}.",
+                    names.len(),
+                    count(consistency.observers, "participant"),
+                    names.join(", ")
+                )
+            }));
+        }
+    }
+    Some(Section::new(title, pieces))
+}
+
+fn times(report: &StudyReport) -> Option<Section> {
+    let figure = figures::times(&report.report.blocks)?;
+    let rows = report.report.blocks.iter().filter_map(|block| {
+        let times = block.rt_ms?;
+        let ms = |x: f64| Cell::number(fixed(x, 0), x);
+        Some(Row::Cells(vec![
+            Cell::text(&block.summary.title),
+            ms(times.q1),
+            ms(times.median),
+            ms(times.q3),
+            Cell::whole(times.n),
+        ]))
+    });
+    let columns = ["block", "first quartile, ms#", "median, ms#", "third quartile, ms#", "answers#"];
+    Some(Section::new("Response times", vec![figure, Piece::Table(Table::new("", &columns, rows.collect()))]))
+}
+
+fn errors(report: &StudyReport) -> Option<Section> {
+    let figure = figures::errors(report)?;
+    let rows = figures::judged(report).into_iter().map(|j| {
+        Row::Cells(vec![
+            Cell::text(j.pair),
+            Cell::text(j.condition),
+            Cell::number(significant(j.rmse, 3), j.rmse),
+            Cell { shown: share(j.share, j.interval), exact: Some(j.share.to_string()), note: None },
+        ])
+    });
+    let columns = ["pair", "condition", "RMSE in penumbra#", "preferred it, 95% interval#"];
+    Some(Section::new(
+        "Physical error and preference",
+        vec![figure, Piece::Table(Table::new("", &columns, rows.collect()))],
+    ))
+}
+
+/// The paper's test with and without the excluded.
+fn both_ways(report: &StudyReport) -> Option<Section> {
+    let everybody = report.blocks_with_excluded.as_ref()?;
+    let mut rows = Vec::new();
+    for (screened, all) in report.report.blocks.iter().zip(everybody) {
+        for (whose, block) in [("without the excluded", screened), ("everybody", all)] {
+            let share = block.analysis.proportion.as_ref().map(|p| p.proportion);
+            let cells = vec![
+                Cell::text(&block.summary.title),
+                Cell::text(whose),
+                Cell::whole(block.summary.n),
+                Cell::maybe(share, percent),
+                Cell::maybe(block.summary.t, |t| fixed(t, 3)),
+                Cell::maybe(block.summary.p, p_value),
+                Cell::maybe(block.p_holm, p_value),
+            ];
+            rows.push(Row::Cells(cells));
+        }
+    }
+    let columns = ["block", "answers of", "n#", "share#", "t#", "p#", "p, Holm#"];
+    Some(Section::new("With and without the excluded", vec![Piece::Table(Table::new("", &columns, rows))]))
+}
+
+/// The paper's own tests beside this study's.
+fn paper(report: &StudyReport) -> Option<Section> {
+    let paper = report.paper.as_ref()?;
+    let mut rows = Vec::new();
+    // The study's blocks repeat the paper's comparisons, in the paper's order.
+    let blocks = &report.report.blocks;
+    for (k, theirs) in paper.comparisons.iter().enumerate() {
+        let effect = |g: f64, low: f64, high: f64| Cell {
+            shown: format!("{}, {}", fixed(g, 3), range(low, high, 3)),
+            exact: Some(g.to_string()),
+            note: None,
+        };
+        rows.push(Row::Group(theirs.title.to_owned()));
+        rows.push(Row::Cells(vec![
+            Cell::text("the paper, as printed"),
+            Cell::whole(theirs.test.n),
+            Cell::number(fixed(theirs.printed.t, 3), theirs.printed.t),
+            Cell::default(),
+            Cell::default(),
+            Cell::default(),
+        ]));
+        rows.push(Row::Cells(vec![
+            Cell::text("the paper, from its counts"),
+            Cell::whole(theirs.test.n),
+            Cell::number(fixed(theirs.test.t, 3), theirs.test.t),
+            Cell::number(p_value(theirs.test.p), theirs.test.p),
+            Cell::number(p_value(theirs.p_holm), theirs.p_holm),
+            effect(theirs.effect.g, theirs.effect.g_interval.low, theirs.effect.g_interval.high),
+        ]));
+        if let Some(ours) = blocks.get(k).filter(|_| blocks.len() == paper.comparisons.len()) {
+            let g = ours.analysis.effect.as_ref();
+            rows.push(Row::Cells(vec![
+                Cell::text("this study"),
+                Cell::whole(ours.summary.n),
+                Cell::maybe(ours.summary.t, |t| fixed(t, 3)),
+                Cell::maybe(ours.summary.p, p_value),
+                Cell::maybe(ours.p_holm, p_value),
+                g.map_or_else(|| Cell::text(MISSING), |e| effect(e.g, e.g_interval.low, e.g_interval.high)),
+            ]));
+        }
+    }
+    let columns = ["of PA", "n#", "t#", "p#", "p, Holm#", "Hedges' g, 95% interval#"];
+    let mut pieces = vec![
+        Piece::Text(
+            "Taylor & Cameron's three tests, computed again from the counts that their printed means and standard deviations imply, beside this study's \
+             own. This study's pictures, scenes and participants are others; its photographs are simulated until real ones stand in their place."
+                .to_owned(),
+        ),
+        Piece::Table(Table::new("", &columns, rows)),
+    ];
+    for theirs in paper.comparisons.iter().filter(|c| !c.t_as_printed) {
+        let (from, to) = paper.printed_t.participants;
+        pieces.push(Piece::Warning(format!(
+            "The printed t = {} does not follow from the printed mean and standard deviation, whose counts give {}; no whole number of {from} to {to} \
+             participants gives it.",
+            fixed(theirs.printed.t, 3),
+            fixed(theirs.test.t, 3)
+        )));
+    }
+    Some(Section::new("The paper that this study repeats", pieces))
+}
+
+fn methods(report: &StudyReport) -> Section {
+    let mut pieces: Vec<Piece> = report.report.methods.iter().cloned().map(Piece::Text).collect();
+    pieces.push(Piece::Text(format!(
+        "All statistics were computed by kelir {}, in double precision, with the seed {} for resampling.",
+        report.kelir_version, report.design.seed
+    )));
+    Section::reference("Methods", pieces)
+}
+
+fn data(report: &StudyReport) -> Section {
+    let fact = |name: &str, value: &str| Row::Cells(vec![Cell::text(name), Cell::text(value)]);
+    let mut rows = vec![
+        fact("study", &report.study),
+        fact("version (SHA-256 of its definition)", &report.config_hash),
+        fact("seed", &report.design.seed.to_string()),
+        fact("kelir", &report.kelir_version),
+        fact("stored answers (all studies of the folder)", &report.chain.rows.to_string()),
+        fact("chain of answers ends in", &report.chain.head),
+        fact("payloads blanked by withdrawal", &report.chain.blanked.to_string()),
+    ];
+    if let Some((row, what)) = &report.chain.broken {
+        rows.push(fact("chain broken", &format!("answer {row}: {what}")));
+    }
+    let versions = Table::new("", &["what", "value"], rows);
+    let mut pieces = vec![Piece::Table(versions)];
+    if report.stimuli.is_empty() {
+        pieces.push(Piece::Text("No stimulus has been made yet.".to_owned()));
+    } else {
+        let rows = report.stimuli.iter().map(|stimulus| {
+            Row::Cells(vec![
+                Cell::text(&stimulus.pair),
+                Cell::text(&stimulus.condition),
+                Cell::maybe(stimulus.penumbra_rmse(), |e| significant(e, 3)),
+                Cell::text(&stimulus.sha256),
+            ])
+        });
+        let columns = ["pair", "condition", "RMSE in penumbra#", "SHA-256"];
+        pieces.push(Piece::Table(Table::new(
+            "Stimuli, by the hash of their bytes.",
+            &columns,
+            rows.collect(),
+        )));
+    }
+    Section::reference("Data, versions and hashes", pieces)
+}
+
+fn citation(report: &StudyReport) -> Section {
+    let year = report
+        .answered
+        .as_ref()
+        .and_then(|[_, last]| last.get(..4))
+        .map_or(String::new(), |y| format!(" ({y})"));
+    let study = format!(
+        "{}{year} [study {}, definition SHA-256 {}, answers' chain {}].",
+        report.title, report.study, report.config_hash, report.chain.head
+    );
+    let kelir = format!(
+        "kelir {}: a platform for perceptual studies of shadows [computer software].",
+        report.kelir_version
+    );
+    let mut pieces = vec![
+        Piece::Text("Cite the data with its hashes, the software with its version, and the methods that a conclusion rests on.".to_owned()),
+        Piece::List(vec![study, kelir]),
+    ];
+    let mut references = report.report.references.clone();
+    if report.paper.is_some() {
+        references.push("Taylor, & Cameron. Rendering Virtual Shadow Puppet Theatres. [The survey that this study repeats.]".to_owned());
+    }
+    references.sort();
+    if !references.is_empty() {
+        pieces.push(Piece::Heading("References".to_owned()));
+        pieces.push(Piece::List(references));
+    }
+    Section::reference("How to cite", pieces)
+}
