@@ -35,6 +35,8 @@ enum Command {
     Bench(commands::bench::Command),
     /// Judge the answers of a study, or numbers of your own.
     Stats(commands::stats::Args),
+    /// Write a study's report: one HTML file, or Markdown with its figures.
+    Report(commands::report::Args),
     /// A published result, computed again, with what it left out.
     Paper(commands::paper::Args),
 }
@@ -68,6 +70,7 @@ fn main() -> ExitCode {
         Command::Study(command) => commands::study::run(command),
         Command::Bench(command) => commands::bench::run(command),
         Command::Stats(args) => commands::stats::run(args),
+        Command::Report(args) => commands::report::run(args),
         Command::Paper(args) => commands::paper::run(args),
     };
     match done {

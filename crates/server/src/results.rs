@@ -1,15 +1,22 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
 use crate::export::write_row;
-use kelir_store::{AnswerRow, Answers, ChainReport, Participants, Store, StoreError, StudyStimulus};
+use kelir_report::{Chain, StudyReport};
+use kelir_stats::paper::taylor_cameron;
+use kelir_store::{AnswerRow, Answers, Participants, Store, StoreError, StudyStimulus};
 use kelir_study::analysis::{Answer, BlockSummary, summarise};
-use kelir_study::report::{BlockReport, Observation, Report};
-use kelir_study::screening::{Exclusion, Seen, screen};
+use kelir_study::report::{Observation, Report};
+use kelir_study::screening::{Seen, screen};
 use kelir_study::{Screening, StudyDefinition};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+pub use kelir_report::{Excluded, OtherVersion};
+
+/// The study that repeats the paper's survey, and so has the paper's own tests beside its own.
+const PAPER_STUDY: &str = "shadow-puppets";
 
 /// Results of one version of a study.
 #[derive(Clone, Debug, Serialize)]
@@ -32,56 +39,6 @@ pub struct StudyResults {
     pub stimuli: Vec<StudyStimulus>,
     /// Other versions of the study that have sessions; their answers are not in these results.
     pub other_versions: Vec<OtherVersion>,
-}
-
-/// A participant who is left out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Excluded {
-    /// Session's id.
-    pub session_id: String,
-    /// Every reason there is.
-    pub reasons: Vec<Exclusion>,
-}
-
-/// Everything kelir can say of one version of a study, as a report or a paper's methods and results need it.
-#[derive(Clone, Debug, Serialize)]
-pub struct StudyReport {
-    /// Study's id.
-    pub study: String,
-    /// Study's title.
-    pub title: String,
-    /// The question over every pair.
-    pub question: String,
-    /// Version of the study that this is of.
-    pub config_hash: String,
-    /// Version of kelir that judged.
-    pub kelir_version: String,
-    /// How many people take part.
-    pub participants: Participants,
-    /// Who is left out by the study's rules of screening, and why.
-    pub excluded: Vec<Excluded>,
-    /// The study's rules of screening.
-    pub screening: Screening,
-    /// Blocks, scale and methods, without the excluded.
-    #[serde(flatten)]
-    pub report: Report,
-    /// The blocks with everybody; null when nobody is excluded.
-    pub blocks_with_excluded: Option<Vec<BlockReport>>,
-    /// What was shown, with how it was made and its measured error.
-    pub stimuli: Vec<StudyStimulus>,
-    /// Other versions of the study that have sessions; their answers are not in here.
-    pub other_versions: Vec<OtherVersion>,
-    /// Whether the stored answers are what was written: the chain over all studies of the data folder.
-    pub chain: ChainReport,
-}
-
-/// A version of the study that the results leave out.
-#[derive(Clone, Debug, Serialize)]
-pub struct OtherVersion {
-    /// Hash of its definition.
-    pub config_hash: String,
-    /// Sessions begun with it.
-    pub sessions: u64,
 }
 
 /// Computes the results of this version of a study from what is stored now.
@@ -147,20 +104,43 @@ pub(crate) async fn report_of(
     let judged: Vec<Observation<'_>> =
         everybody.iter().filter(|o| !left_out.contains(o.answer.session_id)).copied().collect();
     let report = Report::of(study, &judged);
-    let with_excluded = (!excluded.is_empty()).then(|| Report::of(study, &everybody).blocks);
+    let (with_excluded, scale_with_excluded) = if excluded.is_empty() {
+        (None, None)
+    } else {
+        let everybody = Report::of(study, &everybody);
+        (Some(everybody.blocks), everybody.scale)
+    };
+    let people = store.participants(&study.id, &config_hash, idle).await?;
+    let shown = store.study_stimuli(&study.id, &config_hash).await?.into_iter();
+    let chain = store.verify_chain().await?;
     Ok(StudyReport {
         study: study.id.clone(),
         title: study.title.clone(),
         question: study.question.clone(),
         kelir_version: env!("CARGO_PKG_VERSION").to_owned(),
-        participants: store.participants(&study.id, &config_hash, idle).await?,
+        answered: store.answer_times(&study.id, &config_hash).await?.map(|(first, last)| [first, last]),
+        participants: kelir_report::Participants {
+            started: people.started,
+            in_progress: people.in_progress,
+            completed: people.completed,
+        },
         screening: study.screening.clone(),
         report,
         blocks_with_excluded: with_excluded,
+        scale_with_excluded,
         excluded,
-        stimuli: store.study_stimuli(&study.id, &config_hash).await?,
+        stimuli: shown
+            .map(|StudyStimulus { pair, condition, sha256, provenance }| kelir_report::Stimulus {
+                pair,
+                condition,
+                sha256,
+                provenance,
+            })
+            .collect(),
         other_versions: other_versions(store, &study.id, &config_hash).await?,
-        chain: store.verify_chain().await?,
+        chain: Chain { rows: chain.rows, head: chain.head, broken: chain.broken, blanked: chain.blanked },
+        paper: taylor_cameron().ok().filter(|_| study.id == PAPER_STUDY),
+        design: study.clone(),
         config_hash,
     })
 }

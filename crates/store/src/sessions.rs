@@ -271,6 +271,24 @@ impl Store {
         })
     }
 
+    /// When the first and the last answer to a study's version came, ISO-8601 UTC; `None` without answers.
+    pub async fn answer_times(
+        &self,
+        study_id: &str,
+        config_hash: &str,
+    ) -> Result<Option<(String, String)>, StoreError> {
+        // Answers stand in the order they came: either end is found by walking in from it.
+        let end = async |order: &str| -> Result<Option<String>, StoreError> {
+            let query = format!(
+                "SELECT r.received_at FROM responses r CROSS JOIN sessions s WHERE s.session_id = r.session_id
+                 AND s.study_id = $1 AND s.config_hash = $2 ORDER BY r.response_id {order} LIMIT 1"
+            );
+            let row = sqlx::query_scalar(sqlx::AssertSqlSafe(query)).bind(study_id).bind(config_hash);
+            Ok(row.fetch_optional(&self.reader).await?)
+        };
+        Ok(end("ASC").await?.zip(end("DESC").await?))
+    }
+
     /// Number of sessions of each version of a study, `(config_hash, sessions)`.
     pub async fn sessions_by_version(&self, study_id: &str) -> Result<Vec<(String, u64)>, StoreError> {
         let rows = sqlx::query(

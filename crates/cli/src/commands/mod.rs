@@ -5,6 +5,7 @@ pub mod bench;
 mod drawing;
 pub mod paper;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod serve;
 pub mod stats;

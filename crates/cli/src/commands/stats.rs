@@ -1,12 +1,12 @@
 //! `kelir stats STUDY` and `kelir stats ttest`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::{Subcommand, ValueEnum};
-use kelir_server::results::{self, ResultsError, StudyResults};
+use kelir_report::{Document, StudyReport};
+use kelir_server::results::{self, ResultsError};
 use kelir_stats::inference::{TTest, t_test_from_counts};
-use kelir_study::analysis::BlockSummary;
 
 use crate::bad_input;
 use crate::output::{csv, print, table};
@@ -23,8 +23,20 @@ pub struct Args {
     /// The server's data folder; it may be running.
     #[arg(long, default_value = "data")]
     data: PathBuf,
-    #[arg(long, value_enum, default_value = "table")]
-    format: Format,
+    #[arg(long, value_enum, default_value = "text")]
+    format: ReportFormat,
+}
+
+/// How a study's report is printed.
+#[derive(Clone, Copy, ValueEnum)]
+enum ReportFormat {
+    /// For reading, 100 columns wide.
+    #[value(alias = "table")]
+    Text,
+    /// One JSON document, everything in full precision.
+    Json,
+    /// One row a number, full precision.
+    Csv,
 }
 
 /// A test of numbers given on the command line.
@@ -65,65 +77,24 @@ pub fn run(args: Args) -> Result<()> {
             print_test(&test, format)
         }
         (None, Some(study)) => {
-            let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-            let results = runtime.block_on(results::of_study(&args.data, &study)).map_err(results_error)?;
-            print_study(&results, args.format)
+            let report = study_report(&args.data, &study)?;
+            match args.format {
+                ReportFormat::Text => print(&kelir_report::text(&Document::of(&report))),
+                ReportFormat::Json => print(&serde_json::to_string_pretty(&report)?),
+                ReportFormat::Csv => print(&kelir_report::csv(&report)),
+            }
         }
         (None, None) => unreachable!("clap asks for a study or a test"),
     }
 }
 
-fn results_error(error: ResultsError) -> anyhow::Error {
-    match error {
+/// The full report of a study's latest version from a data folder; an unknown folder or study is bad input.
+pub(super) fn study_report(data: &Path, study: &str) -> Result<StudyReport> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    runtime.block_on(results::report_of_study(data, study)).map_err(|error| match error {
         ResultsError::Store(_) => error.into(),
         _ => bad_input(error),
-    }
-}
-
-fn print_study(results: &StudyResults, format: Format) -> Result<()> {
-    let header =
-        ["block", "conditions", "counted", "pairs", "n", "mean", "sd", "mu", "t", "df", "p (two-sided)"];
-    let rows =
-        |number: &dyn Fn(Option<f64>) -> String, p: &dyn Fn(Option<f64>) -> String| -> Vec<Vec<String>> {
-            let row = |block: &BlockSummary| {
-                vec![
-                    block.id.clone(),
-                    block.conditions.join(" / "),
-                    block.target.clone(),
-                    block.pairs.to_string(),
-                    block.n.to_string(),
-                    number(block.mean),
-                    number(block.sd),
-                    block.mu.to_string(),
-                    number(block.t),
-                    block.df.map_or_else(String::new, |df| df.to_string()),
-                    p(block.p),
-                ]
-            };
-            results.blocks.iter().map(row).collect()
-        };
-    let exact = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    match format {
-        Format::Json => print(&serde_json::to_string_pretty(results)?),
-        Format::Csv => print(&csv(&header, &rows(&exact, &exact))),
-        Format::Table => {
-            let rounded =
-                |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
-            let p = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), p_value);
-            print(&format!("{} ({})", results.title, results.study))?;
-            let people = &results.participants;
-            print(&format!(
-                "participants: {} started, {} in progress, {} completed\n",
-                people.started, people.in_progress, people.completed
-            ))?;
-            print(&table(&header, &rows(&rounded, &p)))?;
-            let notes = results
-                .blocks
-                .iter()
-                .filter_map(|block| Some(format!("{}: {}", block.id, block.note.as_ref()?)));
-            print(&notes.collect::<Vec<_>>().join("\n"))
-        }
-    }
+    })
 }
 
 fn print_test(test: &TTest, format: Format) -> Result<()> {
