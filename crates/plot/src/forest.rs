@@ -17,7 +17,7 @@ pub struct Estimate {
     pub interval: Option<[f64; 2]>,
     /// The numbers as text, at the right.
     pub text: String,
-    /// A row that sums up the rows below it.
+    /// A row that sums up the rows below it; with neither value nor text, a heading over them.
     pub strong: bool,
 }
 
@@ -60,9 +60,11 @@ pub fn forest(figure: &Forest) -> Result<String, PlotError> {
     };
     let fitted = crate::draw::fit(&axis, values)?;
 
+    // Bold letters are wider by a tenth.
+    let wide = |row: &Estimate, of: &str| text_width(of) * if row.strong { 1.1 } else { 1.0 };
     let longest =
-        |of: fn(&Estimate) -> &str| figure.rows.iter().map(|r| text_width(of(r))).fold(0.0, f64::max);
-    let names = longest(|row| &row.label).min(0.38 * width);
+        |of: fn(&Estimate) -> &str| figure.rows.iter().map(|row| wide(row, of(row))).fold(0.0, f64::max);
+    let names = longest(|row| &row.label).min(0.42 * width);
     let left = 12.0 + names + 14.0;
     let right = (width - longest(|row| &row.text).min(0.34 * width) - 22.0).max(left + 40.0);
     let bottom = TOP_PX + ROW_PX * figure.rows.len() as f64;
@@ -92,7 +94,7 @@ pub fn forest(figure: &Forest) -> Result<String, PlotError> {
     for (k, row) in figure.rows.iter().enumerate() {
         let middle = TOP_PX + ROW_PX * (k as f64 + 0.5);
         let (colour, weight) = if row.strong { (PALETTE[1], "bold") } else { (PALETTE[0], "normal") };
-        let label = shortened(&row.label, names + 4.0);
+        let label = shortened(&row.label, names / if row.strong { 1.1 } else { 1.0 } + 4.0);
         group = group
             .add(text(&label, (12.0, middle), "start", INK).set("font-weight", weight))
             .add(text(&row.text, (right + 12.0, middle), "start", INK).set("font-weight", weight));

@@ -69,7 +69,7 @@ fn cells(number: &Number) -> Vec<Cell> {
     let shown = |x: f64, decimals: usize| {
         // Very small and very large numbers keep their digits.
         let hidden =
-            x != 0.0 && decimals > 0 && (x.abs() < 0.5 * 0.1f64.powi(decimals as i32) || x.abs() >= 1e6);
+            x != 0.0 && decimals > 0 && (x.abs() < 5.0 * 0.1f64.powi(decimals as i32) || x.abs() >= 1e6);
         if hidden { significant(x, 3) } else { fixed(x, decimals) }
     };
     let statistic = Cell::text(&number.statistic);

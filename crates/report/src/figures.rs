@@ -8,8 +8,8 @@ use kelir_stats::inference::Interval;
 use kelir_study::report::{BlockReport, Proportion};
 
 /// Width of every figure, px: on a phone it is shown at six tenths and its letters can still be read.
-const WIDTH: u32 = 620;
-const HEIGHT: u32 = 400;
+const WIDTH: u32 = 560;
+const HEIGHT: u32 = 380;
 
 /// A figure, or a sentence that says why it could not be drawn.
 fn drawn(name: &str, caption: String, picture: Result<String, kelir_plot::PlotError>) -> Piece {
@@ -36,15 +36,11 @@ pub(crate) fn choices(blocks: &[BlockReport]) -> Option<Piece> {
         let summary = &block.summary;
         let [a, b] = &summary.conditions;
         let other = if *a == summary.target { b } else { a };
-        rows.push(row(
-            format!("{}: {} over {other}", summary.id, summary.target),
-            block.analysis.proportion.as_ref(),
-            true,
-        ));
+        let head = Estimate { label: summary.id.clone(), strong: true, ..Estimate::default() };
+        rows.push(head);
+        rows.push(row(format!("{} over {other}", summary.target), block.analysis.proportion.as_ref(), true));
         if block.by_pair.len() > 1 {
-            rows.extend(
-                block.by_pair.iter().map(|pair| row(format!("   {}", pair.id), pair.target.as_ref(), false)),
-            );
+            rows.extend(block.by_pair.iter().map(|pair| row(pair.id.clone(), pair.target.as_ref(), false)));
         }
     }
     if rows.is_empty() {

@@ -214,7 +214,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         }));
     }
     if let Some(bayes) = &analysis.bayes {
-        let row = rows("Bayes factor").number("BF₀₁, for no effect against one (ratio)", bayes.bf01, 3);
+        let row = rows("Bayes factor").number("BF₀₁, for no effect against one (ratio)", bayes.bf01, 2);
         all.push(
             row.noted("above 3 some, above 10 strong evidence for no effect; below 1/3 and 1/10 against it"),
         );

@@ -35,12 +35,14 @@ pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
 fn participants(report: &StudyReport) -> Section {
     let people = &report.participants;
     let mut pieces = vec![Piece::Text(format!(
-        "{} began, {} are in progress, {} finished.{}",
+        "{} began, {} in progress, {} finished.{}",
         count(people.started, "participant"),
         people.in_progress,
         people.completed,
         report.answered.as_ref().map_or(String::new(), |[first, last]| format!(
-            " The first answer came at {first}, the last at {last}."
+            " The first answer came at {}, the last at {}.",
+            minute(first),
+            minute(last)
         ))
     ))];
     let others: u64 = report.other_versions.iter().map(|v| v.sessions).sum();
@@ -71,6 +73,14 @@ fn participants(report: &StudyReport) -> Section {
         pieces.push(Piece::Table(Table::new(caption, &["session", "reason"], rows.collect())));
     }
     Section::new("Participants", pieces)
+}
+
+/// "2026-11-22 14:22 UTC" of an ISO-8601 time; whatever else it is, as it is.
+fn minute(time: &str) -> String {
+    match (time.get(..10), time.get(10..11), time.get(11..16)) {
+        (Some(date), Some("T"), Some(minute)) if time.ends_with('Z') => format!("{date} {minute} UTC"),
+        _ => time.to_owned(),
+    }
 }
 
 fn reason(exclusion: &Exclusion) -> String {
