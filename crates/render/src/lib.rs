@@ -16,6 +16,7 @@ pub mod frame;
 pub mod gpu;
 pub mod irradiance;
 pub mod job;
+pub mod numerics;
 pub mod penumbra;
 pub mod project;
 mod simd;

@@ -47,6 +47,9 @@ pub struct Drawing {
     /// Samples a side of that shadow map (pa).
     #[arg(long, value_name = "N", default_value_t = pa::Knobs::default().map_size)]
     pub map_size: u32,
+    /// Lattice points per distance of a puppet for the dome's light (pa).
+    #[arg(long, value_name = "N", default_value_t = pa::Knobs::default().dome_steps)]
+    pub dome_steps: u32,
     /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 1920 wide.
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[usize; 2]>,
@@ -127,6 +130,7 @@ impl Drawing {
                     VariantName::ShadowMap => pa::Variant::ShadowMap,
                 },
                 map_size: self.map_size,
+                dome_steps: self.dome_steps,
             }),
             TechniqueName::Mc => Technique::Mc(mc::Knobs {
                 spp: self.spp,

@@ -196,6 +196,11 @@ impl Estimator<'_> {
         planes: std::ops::Range<usize>,
         source: Source,
     ) -> (Estimate, bool) {
+        // What doesn't shine makes no penumbra, and its visibility is of no use but as a layer.
+        let dark = self.radiance[k] == [0.0; 3];
+        if dark && self.skip && !self.layers {
+            return (Estimate { base: [0.0; 3], deviation: None }, false);
+        }
         let known = self.known(k, i, j, planes.clone());
         let [v0_r, v0_g, v0_b] = known.unwrap_or([0.0; 3]);
         let full: f64 = self.masks[planes.clone()].iter().map(|m| f64::from(m.max_code)).product();
@@ -208,7 +213,7 @@ impl Estimator<'_> {
         let sums = source(&Job { x, y, emitter: k as u32, first, end, v0_r, v0_g, v0_b });
         let unit = if self.plan.geometric { lit } else { self.plan.emitters[k].scale };
         let scale = unit / (self.points.samples as f64 * full);
-        (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none())
+        (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none() && !dark)
     }
 
     /// The product of codes where the bounds say that it is one value: all planes constant, or one of them opaque.

@@ -122,6 +122,10 @@ impl Mc {
     ) -> Result<(Vec<Row>, Stats), RenderError> {
         let mut stats = Stats::default();
         let started = Instant::now();
+        if !view.skip {
+            self.masks.clear();
+            self.lit.clear();
+        }
         self.prepare(theatre, view);
         let masks: Vec<_> = theatre.planes.iter().map(|p| self.masks[&p.mask.id].clone()).collect();
         let plan = plan::Plan::new(theatre, view, &masks, self.lattice.is_some())?;
@@ -162,6 +166,8 @@ impl Mc {
         self.points = Some(points);
         stats.steps_ms.push(("sample".into(), clock.elapsed().as_secs_f64() * 1e3));
         count(&rows, samples, plan.emitters.len(), view, &mut stats);
+        let dark = sources(theatre).filter(|(_, radiance)| *radiance == [0.0; 3]).count();
+        stats.counts.insert("emitters_dark".into(), if view.skip && !layers { dark as u64 } else { 0 });
         if self.lattice.is_some() {
             // What the lanes of a lattice differ by is no error.
             stats.values.clear();

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::{RenderError, Renderer};
 
 pub use renderer::Oracle;
-pub use visibility::{Point, Visibility, dome, visibility};
+pub use visibility::{Point, Visibility, dome, geometric, visibility};
 
 /// What can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -133,9 +133,12 @@ pub(super) fn upright_at(theatre: &Theatre, shape: &EmitterShape, lamp: DVec3, p
 }
 
 /// ∫ over [from, to] of |[t − h, t + h] ∩ [−p/2, p/2]| / p: a texel's overlap with a box of half-side `h`, averaged over a pixel of
-/// width `p`; everything relative to the box's mean centre. The integrand is a trapezoid; no term is the small difference
+/// width `p` (0 for a point); everything relative to the box's mean centre. The integrand is a trapezoid; no term is the small difference
 /// of large ones.
 fn mean_overlap(from: f64, to: f64, h: f64, p: f64) -> f64 {
+    if p == 0.0 {
+        return (to.min(h) - from.max(-h)).max(0.0);
+    }
     let (top, outer, inner) = ((2.0 * h).min(p), 0.5 * p + h, (0.5 * p - h).abs());
     let height = |t: f64| ((outer - t.abs()) / top).clamp(0.0, 1.0) * top / p;
     let mut ends = [from, to, -outer, -inner, inner, outer].map(|t| t.clamp(from, to));
@@ -143,7 +146,7 @@ fn mean_overlap(from: f64, to: f64, h: f64, p: f64) -> f64 {
     ends.windows(2).map(|w| (w[1] - w[0]) * 0.5 * (height(w[0]) + height(w[1]))).sum()
 }
 
-/// Geometric visibility through one plane, averaged over a pixel of `sides`: overlaps of texels and box as ramps.
+/// Geometric visibility through one plane, averaged over a pixel of `sides` (0 for a point): overlaps of texels and box as ramps.
 fn over_one_plane(theatre: &Theatre, e: usize, centre: DVec2, sides: DVec2) -> [f64; 3] {
     let (lamp, plane) = (theatre.lamp.position_m, &theatre.planes[0]);
     let ratio = plane.centre_m.z / lamp.z;
@@ -164,14 +167,27 @@ fn over_one_plane(theatre: &Theatre, e: usize, centre: DVec2, sides: DVec2) -> [
     };
     let (xs, ys) = (weights(0, plane.mask.width, 1.0), weights(1, plane.mask.height, -1.0));
     let mut shadow = [0.0; 3];
-    for (y, wy) in &ys {
-        for (x, wx) in &xs {
-            for (c, s) in shadow.iter_mut().enumerate() {
-                *s += wx * wy * (1.0 - plane.mask.transmittance(c, *x, *y));
-            }
-        }
+    for (c, shadow) in shadow.iter_mut().enumerate().take(plane.mask.channels) {
+        let opacity = |x: usize, y: usize| 1.0 - plane.mask.transmittance(c, x, y);
+        let row = |(y, wy): &(usize, f64)| xs.iter().map(|(x, wx)| wx * opacity(*x, *y)).sum::<f64>() * wy;
+        *shadow = ys.iter().map(row).sum();
     }
-    shadow.map(|s| 1.0 - s)
+    [0, 1, 2].map(|c| 1.0 - shadow[c % plane.mask.channels])
+}
+
+/// Whether the mean opacity in a box says it all: a rectangle behind one upright plane.
+fn is_one_box(theatre: &Theatre, e: usize) -> bool {
+    let rectangle = matches!(theatre.lamp.emitters[e].shape, EmitterShape::Rectangle { .. });
+    rectangle && matches!(&theatre.planes[..], [plane] if plane.tilt_deg == [0.0; 2])
+}
+
+/// Geometric visibility of emitter `e` alone, per channel: a finite sum through one upright plane, else as [`visibility`] gives it.
+pub fn geometric(theatre: &Theatre, e: usize, point: Point, tolerance: f64) -> [f64; 3] {
+    match point {
+        Point::At(p) if is_one_box(theatre, e) => over_one_plane(theatre, e, p, DVec2::ZERO),
+        Point::Over(centre, sides) if is_one_box(theatre, e) => over_one_plane(theatre, e, centre, sides),
+        _ => visibility(theatre, e, point, tolerance).geometric,
+    }
 }
 
 /// Visibilities of emitter `e`; what is no finite sum (several planes in `area` pixels, disks, tilted planes) to `tolerance`.
@@ -207,11 +223,7 @@ pub fn visibility(theatre: &Theatre, e: usize, point: Point, tolerance: f64) -> 
                 }
                 n *= 2;
             }
-            let rectangle = matches!(theatre.lamp.emitters[e].shape, EmitterShape::Rectangle { .. });
-            if let [plane] = &theatre.planes[..]
-                && plane.tilt_deg == [0.0; 2]
-                && rectangle
-            {
+            if is_one_box(theatre, e) {
                 result.geometric = over_one_plane(theatre, e, centre, sides);
             }
             result

@@ -3,8 +3,8 @@
 //! A plane at distance d takes E_a / (π L_a) = mean of its opacity under k(ρ) = d² / (π (d² + ρ²)²), wherever the point is: a
 //! convolution, made once per mask and distance by FFT and kept while the puppet only moves sideways. Several planes multiply, as PA does.
 //!
-//! The kernel is smooth over about d, so opacity is put on a lattice of step d / [`STEPS`]: each texel's area shared among its four
-//! neighbours (which keeps its centre of mass, so the error is of second order in 1 / STEPS), or, where texels are larger than the step,
+//! The kernel is smooth over about d, so opacity is put on a lattice of step d / steps (the knob `dome_steps`): each texel's area shared among its four
+//! neighbours (which keeps its centre of mass, so the error is of second order in 1 / steps), or, where texels are larger than the step,
 //! texels cut into lattice cells, each with the kernel's exact integral over a cell. Between lattice points the map is interpolated
 //! by cubics.
 
@@ -18,9 +18,7 @@ use rustfft::{FftPlanner, num_complex::Complex};
 
 use crate::irradiance::lambert;
 
-/// Lattice points per distance.
-const STEPS: f64 = 32.0;
-/// Most lattice points a side; very near planes have coarser lattices than d / STEPS.
+/// Most lattice points a side; very near planes have coarser lattices than d / steps.
 const MOST: usize = 2048;
 
 /// One plane's blocking of the dome, in one channel, on a lattice around the plane's centre.
@@ -30,6 +28,7 @@ pub struct DomeMap {
     channel: usize,
     distance_m: f64,
     size_m: [f64; 2],
+    steps: u32,
     /// Lateral distance from the plane's centre that the lattice covers.
     covers_m: DVec2,
     /// Position of value (0, 0) relative to the plane's centre, metres, and the step; y runs downwards.
@@ -51,23 +50,24 @@ fn reach_m(theatre: &Theatre, plane: &Plane) -> DVec2 {
     0.5 * DVec2::new(theatre.screen.width_m, theatre.screen.height_m) + plane.centre_m.truncate().abs()
 }
 
-fn serves(map: &DomeMap, theatre: &Theatre, plane: &Plane, channel: usize) -> bool {
+fn serves(map: &DomeMap, theatre: &Theatre, plane: &Plane, channel: usize, steps: u32) -> bool {
     map.mask.id == plane.mask.id
         && map.channel == channel
         && map.distance_m == -plane.centre_m.z
         && map.size_m == plane.size_m
+        && map.steps == steps
         && map.covers_m.cmpge(reach_m(theatre, plane)).all()
 }
 
-/// Makes `maps` hold what the theatre's planes need and no other; returns how many were made.
-pub fn prepare(theatre: &Theatre, maps: &mut Vec<DomeMap>) -> u64 {
+/// Makes `maps` hold what the theatre's planes need, with `steps` lattice points per distance, and no other; returns how many were made.
+pub fn prepare(theatre: &Theatre, steps: u32, maps: &mut Vec<DomeMap>) -> u64 {
     let needed: Vec<(&Plane, usize)> =
         theatre.planes.iter().flat_map(|p| (0..p.mask.channels).map(move |c| (p, c))).collect();
-    maps.retain(|map| needed.iter().any(|(p, c)| serves(map, theatre, p, *c)));
+    maps.retain(|map| needed.iter().any(|(p, c)| serves(map, theatre, p, *c, steps)));
     let mut built = 0;
     for (plane, channel) in needed {
-        if !maps.iter().any(|map| serves(map, theatre, plane, channel)) {
-            maps.push(DomeMap::new(theatre, plane, channel));
+        if !maps.iter().any(|map| serves(map, theatre, plane, channel, steps)) {
+            maps.push(DomeMap::new(theatre, plane, channel, steps));
             built += 1;
         }
     }
@@ -76,10 +76,10 @@ pub fn prepare(theatre: &Theatre, maps: &mut Vec<DomeMap>) -> u64 {
 
 impl<'a> DomeLight<'a> {
     /// From maps that [`prepare`] made.
-    pub fn new(theatre: &Theatre, radiance: [f64; 3], maps: &'a [DomeMap]) -> Self {
+    pub fn new(theatre: &Theatre, radiance: [f64; 3], steps: u32, maps: &'a [DomeMap]) -> Self {
         let of = |plane: &Plane| {
             let channels = (0..plane.mask.channels)
-                .filter_map(|c| maps.iter().find(|map| serves(map, theatre, plane, c)))
+                .filter_map(|c| maps.iter().find(|map| serves(map, theatre, plane, c, steps)))
                 .collect();
             (plane.centre_m.truncate(), channels)
         };
@@ -97,7 +97,7 @@ impl<'a> DomeLight<'a> {
 }
 
 impl DomeMap {
-    fn new(theatre: &Theatre, plane: &Plane, channel: usize) -> Self {
+    fn new(theatre: &Theatre, plane: &Plane, channel: usize, steps: u32) -> Self {
         let distance_m = -plane.centre_m.z;
         let size = DVec2::from(plane.size_m);
         let grid = DVec2::new(plane.mask.width as f64, plane.mask.height as f64);
@@ -105,7 +105,7 @@ impl DomeMap {
         // Room to slide before the map has to be made again.
         let covers_m = reach_m(theatre, plane) + 0.25 * theatre.screen.width_m;
         let span = 2.0 * covers_m + size;
-        let wanted = (distance_m / STEPS).max((span / (MOST as f64 - 8.0)).max_element());
+        let wanted = (distance_m / f64::from(steps)).max((span / (MOST as f64 - 8.0)).max_element());
         let cells = texel.max_element() > wanted;
         // Lattice points lie on cell centres of the mask when cells are exact, else on any lattice around its centre.
         let (step, lattice) = if cells {
@@ -139,6 +139,7 @@ impl DomeMap {
             channel,
             distance_m,
             size_m: plane.size_m,
+            steps,
             covers_m,
             origin_m,
             step_m: step,

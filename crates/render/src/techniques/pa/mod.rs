@@ -19,6 +19,7 @@ mod native;
 pub(crate) mod plan;
 mod rows;
 mod shadow_map;
+mod skips;
 pub mod table;
 pub(crate) mod tilted;
 pub mod window;
@@ -29,6 +30,7 @@ use crate::{Backend, RenderError, Renderer};
 
 pub use native::Native;
 pub use plan::check_view;
+pub use skips::Skips;
 
 /// What can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -45,11 +47,20 @@ pub struct Knobs {
     pub variant: Variant,
     /// Samples a side of the shadow map (16..=8192).
     pub map_size: u32,
+    /// Lattice points per distance of the puppet that the dome's light is worked out on (2..=128).
+    pub dome_steps: u32,
 }
 
 impl Default for Knobs {
     fn default() -> Self {
-        Self { split: 1, weights: Weights::Area, strips: 64, variant: Variant::Exact, map_size: 1024 }
+        Self {
+            split: 1,
+            weights: Weights::Area,
+            strips: 64,
+            variant: Variant::Exact,
+            map_size: 1024,
+            dome_steps: 32,
+        }
     }
 }
 
@@ -64,6 +75,9 @@ impl Knobs {
         }
         if !(16..=8192).contains(&self.map_size) {
             return Err(RenderError::Knob(format!("map_size = {}: from 16 to 8192", self.map_size)));
+        }
+        if !(2..=128).contains(&self.dome_steps) {
+            return Err(RenderError::Knob(format!("dome_steps = {}: from 2 to 128", self.dome_steps)));
         }
         Ok(())
     }

@@ -52,9 +52,9 @@ pub struct Plan {
     pub sub: usize,
     /// Pieces, grouped by emitter.
     pub pieces: Vec<Piece>,
-    /// Planes × pieces; planes off the beam are absent.
+    /// Planes × pieces; planes off the beam are absent unless asked for.
     pub lookups: Vec<Lookup>,
-    /// Planes with any look-up.
+    /// Planes on the beam.
     pub planes: Vec<usize>,
     /// Per plane of the theatre: whether its tables need u64 sums.
     pub wide: Vec<bool>,
@@ -104,6 +104,15 @@ pub fn refuse_on_gpu(theatre: &Theatre) -> Result<(), RenderError> {
 impl Plan {
     /// Errors: what this code can't draw truthfully.
     pub fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
+        Self::of(theatre, view, knobs, false)
+    }
+
+    /// The same with look-ups also of the planes that no light passes: they change nothing.
+    pub fn with_planes_off_beam(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
+        Self::of(theatre, view, knobs, true)
+    }
+
+    fn of(theatre: &Theatre, view: &View, knobs: &Knobs, all: bool) -> Result<Self, RenderError> {
         check_view(theatre, view)?;
         let lamp = theatre.lamp.position_m;
         if let Some(i) = theatre.planes.iter().position(is_tilted) {
@@ -141,12 +150,12 @@ impl Plan {
             distance_m: theatre.planes.iter().map(|p| -p.centre_m.z).collect(),
         };
         for p in 0..theatre.planes.len() {
-            plan.add_plane(theatre, view, p, size);
+            plan.add_plane(theatre, view, p, size, all);
         }
         Ok(plan)
     }
 
-    fn add_tilted(&mut self, theatre: &Theatre, p: usize) {
+    fn add_tilted(&mut self, theatre: &Theatre, p: usize, all: bool) {
         let plane = &theatre.planes[p];
         let frame = Frame::new(plane);
         let corner = 0.5 * DVec2::new(theatre.screen.width_m, theatre.screen.height_m);
@@ -155,7 +164,7 @@ impl Plan {
             let [low, high] = frame.range([-corner, corner], piece);
             low.cmpge(grid).any() || high.cmple(DVec2::ZERO).any()
         });
-        if off {
+        if off && !all {
             return;
         }
         self.wide[p] = plane.mask.width as f64 * plane.mask.height as f64 * f64::from(plane.mask.max_code())
@@ -173,18 +182,20 @@ impl Plan {
                 tilted: Some(frame.clone()),
             });
         }
-        self.planes.push(p);
+        if !off {
+            self.planes.push(p);
+        }
         self.channels = self.channels.max(plane.mask.channels);
     }
 
-    fn add_plane(&mut self, theatre: &Theatre, view: &View, p: usize, size: [usize; 2]) {
+    fn add_plane(&mut self, theatre: &Theatre, view: &View, p: usize, size: [usize; 2], all: bool) {
         let plane = &theatre.planes[p];
         let grid = [plane.mask.width, plane.mask.height];
         let first = self.lookups.len();
         let max_code = f64::from(plane.mask.max_code());
         let mut largest = 0f64;
         if is_tilted(plane) {
-            return self.add_tilted(theatre, p);
+            return self.add_tilted(theatre, p, all);
         }
         for (i, piece) in self.pieces.iter().enumerate() {
             let map = ShadowBox::new(plane, piece.centre_m);
@@ -215,7 +226,7 @@ impl Plan {
             let ([x0, x1], [y0, y1]) = (l.x.touched(0..size[0], grid[0]), l.y.touched(0..size[1], grid[1]));
             x0 == x1 || y0 == y1
         });
-        if off {
+        if off && !all {
             self.lookups.truncate(first);
             return;
         }
@@ -235,7 +246,9 @@ impl Plan {
             };
             self.lookups[l].within = (l + 1..self.lookups.len()).find(contains);
         }
-        self.planes.push(p);
+        if !off {
+            self.planes.push(p);
+        }
         self.channels = self.channels.max(plane.mask.channels);
     }
 }

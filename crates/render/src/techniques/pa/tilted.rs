@@ -45,13 +45,13 @@ impl Frame {
         (way > 0.0 && way < 1.0).then(|| self.middle + DVec2::new(x.dot(self.u), x.dot(self.v)))
     }
 
-    /// Mean opacity of `piece` at `p_m`.
-    pub fn opacity(&self, table: &Table, piece: &Piece, p_m: DVec2) -> f64 {
+    /// The box that stands for what `p_m` sees of `piece`: centre and full sides, texels. None where it sees past the plane.
+    pub fn seen(&self, piece: &Piece, p_m: DVec2) -> Option<(DVec2, DVec2)> {
         let at = |x: f64, y: f64| {
             let offset = DVec3::new(0.5 * x * piece.size_m[0], 0.5 * y * piece.size_m[1], 0.0);
             self.texel(p_m, piece.centre_m + offset)
         };
-        let Some(centre) = at(0.0, 0.0) else { return 0.0 };
+        let centre = at(0.0, 0.0)?;
         // Where one half of a piece sees past the plane, the other half says how large it is there.
         let side = |x: f64, y: f64| match (at(x, y), at(-x, -y)) {
             (Some(a), Some(b)) => (a - b).abs(),
@@ -59,7 +59,12 @@ impl Frame {
             (None, None) => DVec2::ZERO,
         };
         let sides = DVec2::new(side(1.0, 0.0).x, side(0.0, 1.0).y);
-        if sides.cmple(DVec2::ZERO).any() { 0.0 } else { table.mean(centre, sides) }
+        sides.cmpgt(DVec2::ZERO).all().then_some((centre, sides))
+    }
+
+    /// Mean opacity of `piece` at `p_m`.
+    pub fn opacity(&self, table: &Table, piece: &Piece, p_m: DVec2) -> f64 {
+        self.seen(piece, p_m).map_or(0.0, |(centre, sides)| table.mean(centre, sides))
     }
 
     /// Texels [x0, x1] × [y0, y1] that any point of the rectangle `p_m` sees `piece` through. Both maps, of screen points and of
@@ -94,7 +99,7 @@ impl Table {
 }
 
 /// Texel ranges of [centre ± width / 2] inside the grid, each with the share of a texel that it counts for.
-fn parts(centre: f64, width: f64, size: usize) -> ([([usize; 2], f64); 3], usize) {
+pub(crate) fn parts(centre: f64, width: f64, size: usize) -> ([([usize; 2], f64); 3], usize) {
     let base = centre.floor();
     let middle = centre - base;
     let (from, to) = (middle - 0.5 * width, middle + 0.5 * width);

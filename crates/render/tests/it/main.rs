@@ -1,0 +1,6 @@
+//! Integration tests of the renderer.
+#![allow(clippy::unwrap_used)]
+
+mod golden;
+mod skips;
+mod support;
