@@ -111,10 +111,11 @@ impl Job<'_> {
         let kind = |t: usize| {
             let of = &states[t * entries..(t + 1) * entries];
             let all = |state: State, skip: Skips| self.skips.has(skip) && of.iter().all(|s| *s == state);
+            let hidden = no_other_light && !of.is_empty();
             match () {
                 () if self.dome.is_some() => Kind::Shade,
                 () if all(State::Lit, Skips::LIT_TILES) => Kind::Lit,
-                () if no_other_light && all(State::Dark, Skips::DARK_TILES) => Kind::Black,
+                () if hidden && all(State::Dark, Skips::DARK_TILES) => Kind::Black,
                 () => Kind::Shade,
             }
         };
