@@ -6,7 +6,13 @@ use kelir_scene::{Scene, Theatre};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::{Backend, RenderError, Technique, View, exposure, renderer};
+use crate::{Backend, RenderError, Renderer, Technique, View, exposure, renderer};
+
+mod savings;
+mod scaling;
+
+pub use savings::{Saving, savings};
+pub use scaling::{Scaled, scaling};
 
 /// What changes from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -41,6 +47,8 @@ pub struct CaseReport {
     pub ratio: f64,
     /// Median of each step, ms; `scene` is the theatre itself (raster and pose).
     pub steps_ms: Vec<(String, f64)>,
+    /// The step that takes most of a frame, and its share.
+    pub bound: String,
     /// Counts of the last frame.
     pub counts: std::collections::BTreeMap<String, u64>,
 }
@@ -89,55 +97,95 @@ pub fn frames(
         adapter: drawing.adapter(),
         cases: Vec::new(),
     };
-    let mut out = vec![0u32; view.size[0] * view.size[1]];
     for case in cases {
         if *case == Case::Posed && scene.timeline().is_none() {
             continue;
         }
         let view = View { skip: *case != Case::NothingSkipped && view.skip, ..*view };
-        let warm = 3;
-        let (mut times, mut floors) = (Vec::with_capacity(frames), Vec::with_capacity(frames));
-        let mut steps: Vec<(String, Vec<f64>)> = vec![("scene".into(), Vec::new())];
-        let mut counts = Default::default();
-        for k in 0..frames + warm {
-            let clock = Instant::now();
-            fill(&mut out, 0xff80_8080);
-            let floor = clock.elapsed().as_secs_f64() * 1e3;
-            let clock = Instant::now();
-            let theatre = staged(scene, &still, *case, k, frames);
-            let staging = clock.elapsed().as_secs_f64() * 1e3;
-            let stats = drawing.display(&theatre, &view, white, &mut out)?;
-            let time = clock.elapsed().as_secs_f64() * 1e3;
-            if k < warm {
-                continue;
-            }
-            times.push(time);
-            floors.push(floor);
-            steps[0].1.push(staging);
-            for (name, ms) in stats.steps_ms {
-                match steps.iter_mut().find(|(n, _)| *n == name) {
-                    Some((_, all)) => all.push(ms),
-                    None => steps.push((name, vec![ms])),
-                }
-            }
-            counts = stats.counts;
-        }
-        let fps = 1e3 * times.len() as f64 / times.iter().sum::<f64>();
-        times.sort_by(f64::total_cmp);
-        let (median_ms, floor_ms) = (quantile(&times, 0.5), median(&mut floors));
+        let timed =
+            timed(drawing.as_mut(), &view, white, frames, |k| staged(scene, &still, *case, k, frames))?;
         report.cases.push(CaseReport {
             case: *case,
-            fps,
-            least_ms: times[0],
-            median_ms,
-            p99_ms: quantile(&times, 0.99),
-            floor_ms,
-            ratio: median_ms / floor_ms,
-            steps_ms: steps.into_iter().map(|(name, mut all)| (name, median(&mut all))).collect(),
-            counts,
+            fps: 1e3 * timed.times.len() as f64 / timed.times.iter().sum::<f64>(),
+            least_ms: timed.times[0],
+            median_ms: quantile(&timed.times, 0.5),
+            p99_ms: quantile(&timed.times, 0.99),
+            floor_ms: timed.floor_ms,
+            ratio: quantile(&timed.times, 0.5) / timed.floor_ms,
+            bound: bound(&timed.steps_ms),
+            steps_ms: timed.steps_ms,
+            counts: timed.counts,
         });
     }
     Ok(report)
+}
+
+/// Times of a run of frames.
+struct Timed {
+    /// Of whole frames, ms, sorted.
+    times: Vec<f64>,
+    floor_ms: f64,
+    steps_ms: Vec<(String, f64)>,
+    counts: std::collections::BTreeMap<String, u64>,
+}
+
+/// Draws frame after frame of what `theatre` makes; the first three are not timed.
+fn timed(
+    drawing: &mut dyn Renderer,
+    view: &View,
+    white: f64,
+    frames: usize,
+    mut theatre: impl FnMut(usize) -> Theatre,
+) -> Result<Timed, RenderError> {
+    const WARM: usize = 3;
+    let mut out = vec![0u32; view.size[0] * view.size[1]];
+    let (mut times, mut floors) = (Vec::with_capacity(frames), Vec::with_capacity(frames));
+    let mut steps: Vec<(String, Vec<f64>)> = vec![("scene".into(), Vec::new())];
+    let mut counts = Default::default();
+    for k in 0..frames.max(1) + WARM {
+        let clock = Instant::now();
+        fill(&mut out, 0xff80_8080);
+        let floor = clock.elapsed().as_secs_f64() * 1e3;
+        let clock = Instant::now();
+        let theatre = theatre(k);
+        let staging = clock.elapsed().as_secs_f64() * 1e3;
+        let stats = drawing.display(&theatre, view, white, &mut out)?;
+        let time = clock.elapsed().as_secs_f64() * 1e3;
+        if k < WARM {
+            continue;
+        }
+        times.push(time);
+        floors.push(floor);
+        steps[0].1.push(staging);
+        for (name, ms) in stats.steps_ms {
+            match steps.iter_mut().find(|(n, _)| *n == name) {
+                Some((_, all)) => all.push(ms),
+                None => steps.push((name, vec![ms])),
+            }
+        }
+        counts = stats.counts;
+    }
+    times.sort_by(f64::total_cmp);
+    let steps_ms = steps.into_iter().map(|(name, mut all)| (name, median(&mut all))).collect();
+    Ok(Timed { times, floor_ms: median(&mut floors), steps_ms, counts })
+}
+
+/// In words, the step that takes most of a frame.
+fn bound(steps_ms: &[(String, f64)]) -> String {
+    let all: f64 = steps_ms.iter().map(|(_, ms)| ms).sum();
+    let Some((name, ms)) = steps_ms.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return String::new() };
+    let what = match name.as_str() {
+        "scene" => "posing and rasterising",
+        "plan" => "where boxes lie",
+        "tables" => "summing tables",
+        "background" => "E⁰ and codes of the lit screen",
+        "dome" => "the dome's convolution",
+        "pixels" => "look-ups and codes of pixels",
+        "prepare" => "masks and E⁰",
+        "pilot" | "sample" => "samples",
+        other => other,
+    };
+    format!("{what} ({:.0} %)", 100.0 * ms / all)
 }
 
 /// Least times, ms, over `runs`: building the u32 table of `side`² 8-bit texels, and a plain widening copy of them u8 → u32 on as many
@@ -171,7 +219,7 @@ pub fn fill(out: &mut [u32], value: u32) {
 }
 
 fn staged(scene: &mut Scene, still: &Theatre, case: Case, k: usize, frames: usize) -> Theatre {
-    let phase = k as f64 / frames.max(1) as f64 * std::f64::consts::TAU;
+    let phase = k as f64 / frames.max(1) as f64;
     match case {
         Case::Posed => {
             let seconds = scene.timeline().map_or(1.0, |t| t.seconds);
@@ -180,16 +228,20 @@ fn staged(scene: &mut Scene, still: &Theatre, case: Case, k: usize, frames: usiz
         }
         Case::LampMoved => {
             let mut theatre = still.clone();
-            theatre.lamp.position_m.x += 0.1 * phase.sin();
+            theatre.lamp.position_m.x += 0.1 * (std::f64::consts::TAU * phase).sin();
             theatre
         }
-        Case::Slid | Case::NothingSkipped => {
-            let mut theatre = still.clone();
-            for plane in &mut theatre.planes {
-                plane.centre_m.x += 0.05 * theatre.screen.width_m * phase.sin();
-                plane.centre_m.y += 0.02 * theatre.screen.height_m * (2.0 * phase).sin();
-            }
-            theatre
-        }
+        Case::Slid | Case::NothingSkipped => slid(still, phase),
     }
+}
+
+/// The theatre with its puppets moved sideways, once around for `phase` from 0 to 1.
+fn slid(still: &Theatre, phase: f64) -> Theatre {
+    let mut theatre = still.clone();
+    let turn = std::f64::consts::TAU * phase;
+    for plane in &mut theatre.planes {
+        plane.centre_m.x += 0.05 * theatre.screen.width_m * turn.sin();
+        plane.centre_m.y += 0.02 * theatre.screen.height_m * (2.0 * turn).sin();
+    }
+    theatre
 }

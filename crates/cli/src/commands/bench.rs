@@ -20,6 +20,9 @@ pub enum Command {
         /// Frames of each case.
         #[arg(long, default_value_t = 200)]
         frames: usize,
+        /// Also a table over pixels, mask size, emitters, puppets, samples and threads.
+        #[arg(long)]
+        scaling: bool,
         /// Also write the figures as JSON.
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
@@ -45,7 +48,9 @@ pub enum Command {
 /// Runs the command.
 pub fn run(command: Command) -> Result<()> {
     match command {
-        Command::Frames { drawing, frames, json } => frames::run(&drawing, frames, json.as_deref()),
+        Command::Frames { drawing, frames, scaling, json } => {
+            frames::run(&drawing, frames, scaling, json.as_deref())
+        }
         Command::Numerics { stats: true, .. } => numerics::statistics(),
         Command::Numerics { curves: true, json, .. } => numerics::curves(json.as_deref()),
         Command::Numerics { most, json, .. } => numerics::renderer(most, json.as_deref()),
