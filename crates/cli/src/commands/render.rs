@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use anyhow::Result;
 use kelir_render::encode::{self, Attributes};
-use kelir_render::{Frame, Stats, file, renderer, white};
+use kelir_render::exposure::{of_scene, white};
+use kelir_render::{Frame, Stats, file, renderer};
 use serde::Serialize;
 
 use super::drawing::{Drawing, StatsFormat, render_error};
@@ -55,17 +56,7 @@ pub fn run(args: Args) -> Result<()> {
 
     let begun = Instant::now();
     // The same exposure for a still and for every frame of the scene's timeline.
-    let white = match scene
-        .timeline()
-        .map(|timeline| (0..timeline.frame_count()).map(|i| timeline.frame_time_s(i)).collect())
-    {
-        Some(times) => {
-            let times: Vec<f64> = times;
-            let frames: Vec<_> = times.into_iter().map(|time_s| scene.theatre_at(time_s)).collect();
-            white(frames.iter().chain([&theatre]), &view)
-        }
-        None => white([&theatre], &view),
-    };
+    let white = white([&theatre], &view).max(of_scene(&scene, &view, true));
     let frame = renderer.radiance(&theatre, &view).map_err(render_error)?;
     let bytes = match container {
         Container::Png => encode::png(&encode::display(&frame, white), frame.size),
