@@ -10,6 +10,8 @@ use anyhow::{Result, bail};
 pub enum Need {
     /// Node.js 20 or newer with npm: builds the web bundle.
     Node,
+    /// A C++ compiler: the H.264 encoder of `kelir animate -o FILE.mp4` is built from source.
+    Cxx,
     /// A Vulkan driver: the wgpu backend (Mesa's software driver will do).
     Vulkan,
     /// Chromium: the end-to-end tests' browser.
@@ -22,6 +24,7 @@ impl Need {
     fn present(self) -> bool {
         match self {
             Self::Node => node_major().is_some_and(|major| major >= 20) && on_path("npm"),
+            Self::Cxx => on_path("c++"),
             Self::Vulkan => ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"]
                 .iter()
                 .any(|dir| Path::new(dir).read_dir().is_ok_and(|mut files| files.next().is_some())),
@@ -34,6 +37,7 @@ impl Need {
     fn packages(self) -> &'static [&'static str] {
         match self {
             Self::Node => &[],
+            Self::Cxx => &["g++"],
             Self::Vulkan => &["mesa-vulkan-drivers", "libvulkan1"],
             // Without recommended packages Chromium comes without a font, and a page without text.
             Self::Chromium => &["chromium", "fonts-dejavu-core"],
@@ -44,6 +48,7 @@ impl Need {
     fn why(self) -> &'static str {
         match self {
             Self::Node => "Node.js 20 or newer with npm builds the web pages",
+            Self::Cxx => "the H.264 encoder is built with a C++ compiler, c++",
             Self::Vulkan => "the GPU backend needs a Vulkan driver (Mesa's software driver will do)",
             Self::Chromium => "the end-to-end tests click through the pages in Chromium at /usr/bin/chromium",
             Self::Sqlite => "the end-to-end tests read the database with the sqlite3 shell",
@@ -53,6 +58,7 @@ impl Need {
     fn by_hand(self) -> &'static str {
         match self {
             Self::Node => "install Node.js 20 or newer from your distribution or https://nodejs.org",
+            Self::Cxx => "as root: apt-get install g++",
             Self::Vulkan => "as root: apt-get install mesa-vulkan-drivers",
             Self::Chromium => "as root: apt-get install chromium",
             Self::Sqlite => "as root: apt-get install sqlite3",

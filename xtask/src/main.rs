@@ -1,4 +1,4 @@
-//! Project tasks: `cargo xtask serve | test | pictures`. Typed, no makefile beside it.
+//! Project tasks: `cargo xtask serve | test | bench | pictures`. Typed, no makefile beside it.
 //!
 //! It depends on nothing that takes long to build: a fresh machine meets it first.
 
@@ -34,6 +34,8 @@ enum Task {
     },
     /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests.
     Test,
+    /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
+    Bench,
     /// Make the README's pictures anew; the trial's comes from the screenshots of the last `test`.
     Pictures,
 }
@@ -44,13 +46,14 @@ fn main() -> Result<()> {
     match Cli::parse().task {
         Task::Serve { data, listen } => serve(&data, &listen),
         Task::Test => test(),
+        Task::Bench => bench(),
         Task::Pictures => pictures(),
     }
 }
 
 /// Builds in release and becomes the server; a second start builds and renders nothing again.
 fn serve(data: &std::path::Path, listen: &str) -> Result<()> {
-    ensure(&[Need::Node, Need::Vulkan])?;
+    ensure(&[Need::Node, Need::Cxx, Need::Vulkan])?;
     step(
         "build",
         cargo(&["build", "--release", "--workspace", "--exclude", "xtask", "--exclude", "kelir-tests"]),
@@ -74,9 +77,34 @@ fn release() -> Result<PathBuf> {
     Ok(run::target_dir().join("release/kelir"))
 }
 
+/// Every benchmark, one after the other, so that none slows another down.
+fn bench() -> Result<()> {
+    ensure(&[Need::Node, Need::Cxx, Need::Vulkan])?;
+    let kelir = release()?;
+    const SCENE: &str = "stimuli/scenes/benchmark.toml";
+    let runs: [(&str, &[&str]); 7] = [
+        ("frames, native", &["frames", SCENE, "--technique", "pa", "--backend", "cpu", "--frames", "300"]),
+        ("frames, wgpu", &["frames", SCENE, "--technique", "pa", "--backend", "gpu", "--frames", "60"]),
+        (
+            "scaling",
+            &["frames", SCENE, "--technique", "pa", "--backend", "cpu", "--frames", "60", "--scaling"],
+        ),
+        ("error against time", &["accuracy", SCENE]),
+        ("exactness of the images", &["numerics"]),
+        ("exactness of the statistics", &["numerics", "--stats"]),
+        ("a million answers", &["rows"]),
+    ];
+    for (name, args) in runs {
+        let mut command = std::process::Command::new(&kelir);
+        command.arg("bench").args(args);
+        step(name, command)?;
+    }
+    step("kernels", cargo(&["bench", "--package", "kelir-render"]))
+}
+
 /// The README's pictures, from the product itself.
 fn pictures() -> Result<()> {
-    ensure(&[Need::Node])?;
+    ensure(&[Need::Node, Need::Cxx])?;
     let folder = run::root().join("docs/pictures");
     std::fs::create_dir_all(&folder)?;
     let mut scene = std::process::Command::new(release()?);
@@ -101,7 +129,7 @@ fn pictures() -> Result<()> {
 
 /// Everything the gate holds.
 fn test() -> Result<()> {
-    ensure(&[Need::Node, Need::Vulkan, Need::Chromium, Need::Sqlite])?;
+    ensure(&[Need::Node, Need::Cxx, Need::Vulkan, Need::Chromium, Need::Sqlite])?;
     step("format", cargo(&["fmt", "--all", "--check"]))?;
     step("web packages", npm("web", &["ci", "--ignore-scripts"]))?;
     step("web types", npm("web", &["run", "check"]))?;
@@ -110,7 +138,7 @@ fn test() -> Result<()> {
     step("lints", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
     // The end-to-end tests run the real binary, so it is built first.
     step("build", cargo(&["build", "--workspace"]))?;
-    step("tests", cargo(&["test", "--workspace"]))?;
+    run::tests("tests", cargo(&["test", "--workspace"]))?;
     eprintln!("── all tests passed");
     Ok(())
 }

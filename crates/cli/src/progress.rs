@@ -1,6 +1,10 @@
 //! Progress bars: on a terminal only, and only for what takes a while.
 
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use kelir_render::Meter;
 
 /// A bar with count and time left; silent when standard error is no terminal (indicatif sees to that).
 pub fn bar(total: u64, what: &str) -> ProgressBar {
@@ -9,4 +13,46 @@ pub fn bar(total: u64, what: &str) -> ProgressBar {
     bar.set_style(style.expect("the template is well-formed"));
     bar.set_message(what.to_owned());
     bar
+}
+
+/// Runs `work`, which counts its rows in `meter`; a bar shows them once it has taken a second.
+pub fn watch<T>(meter: &Meter, what: &str, work: impl FnOnce() -> T) -> T {
+    let (done, finished) = mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            let begun = Instant::now();
+            let mut shown: Option<ProgressBar> = None;
+            // Ends when `done` is dropped.
+            while finished.recv_timeout(Duration::from_millis(100)) == Err(mpsc::RecvTimeoutError::Timeout) {
+                let (rows, of) = meter.read();
+                if of > 0 && begun.elapsed() > Duration::from_secs(1) {
+                    let bar = shown.get_or_insert_with(|| bar(of, what));
+                    bar.set_length(of);
+                    bar.set_position(rows);
+                }
+            }
+            if let Some(bar) = shown {
+                bar.finish_and_clear();
+            }
+        });
+        let answer = work();
+        drop(done);
+        answer
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn watching_changes_nothing_and_ends_with_the_work() {
+        let meter = Meter::default();
+        let count = || {
+            meter.begin(3);
+            (0..3).for_each(|_| meter.add(1));
+            meter.read()
+        };
+        assert_eq!(watch(&meter, "rows", count), (3, 3));
+    }
 }

@@ -1,5 +1,8 @@
 //! What a renderer is asked for and what it answers.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +62,28 @@ pub struct Stats {
     pub steps_ms: Vec<(String, f64)>,
 }
 
+/// How far a long drawing has come, in rows of the image, for whoever shows it; clones count together.
+#[derive(Clone, Debug, Default)]
+pub struct Meter(Arc<[AtomicU64; 2]>);
+
+impl Meter {
+    /// A drawing of `rows` rows begins.
+    pub fn begin(&self, rows: usize) {
+        self.0[0].store(0, Ordering::Relaxed);
+        self.0[1].store(rows as u64, Ordering::Relaxed);
+    }
+
+    /// `rows` more are drawn.
+    pub fn add(&self, rows: usize) {
+        self.0[0].fetch_add(rows as u64, Ordering::Relaxed);
+    }
+
+    /// (drawn, of how many); (0, 0) before the drawing has begun.
+    pub fn read(&self) -> (u64, u64) {
+        (self.0[0].load(Ordering::Relaxed), self.0[1].load(Ordering::Relaxed))
+    }
+}
+
 /// Draws theatres with one technique on one backend; keeps what it built between calls and reuses what did not change.
 pub trait Renderer: Send {
     /// The audience's linear radiance.
@@ -72,6 +97,11 @@ pub trait Renderer: Send {
         white: f64,
         out: &mut [u32],
     ) -> Result<Stats, crate::RenderError>;
+
+    /// Counts the rows of what is drawn from now on; techniques that are done before anyone looks do not.
+    fn watch(&mut self, meter: &Meter) {
+        let _ = meter;
+    }
 
     /// What drew it, for provenance: "native 2 threads avx2" or the GPU adapter's name and driver.
     fn adapter(&self) -> String;

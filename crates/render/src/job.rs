@@ -250,7 +250,7 @@ pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus
     for frame in 0..frames {
         progress(Progress { done: frame + 1, total, what: job.technique.name() });
         let theatre = theatre(job, frame);
-        if last.as_ref().is_some_and(|last| same(last, &theatre))
+        if last.as_ref().is_some_and(|last| last.same_staging(&theatre))
             && let Some(repeated) = shown.last().cloned()
         {
             shown.push(repeated);
@@ -315,18 +315,6 @@ fn theatre(job: &mut Job, frame: usize) -> Theatre {
         }
         _ => job.scene.still(),
     }
-}
-
-/// Whether two theatres of one scene look the same: nothing but lamp and planes can move.
-fn same(a: &Theatre, b: &Theatre) -> bool {
-    a.lamp.position_m == b.lamp.position_m
-        && a.planes.len() == b.planes.len()
-        && a.planes.iter().zip(&b.planes).all(|(a, b)| {
-            a.mask.id == b.mask.id
-                && a.centre_m == b.centre_m
-                && a.size_m == b.size_m
-                && a.tilt_deg == b.tilt_deg
-        })
 }
 
 fn draw(

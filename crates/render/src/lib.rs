@@ -12,6 +12,7 @@ pub mod camera;
 pub mod encode;
 pub mod exposure;
 pub mod file;
+pub mod film;
 pub mod frame;
 pub mod gpu;
 pub mod irradiance;

@@ -22,6 +22,22 @@ pub struct Theatre {
     pub exposure: Exposure,
 }
 
+impl Theatre {
+    /// Whether lamp and planes are where they are in `other`, with the same masks. All that a timeline can move: two instants of one scene for
+    /// which this is true look the same.
+    pub fn same_staging(&self, other: &Theatre) -> bool {
+        let plane = |(a, b): (&Plane, &Plane)| {
+            a.mask.id == b.mask.id
+                && a.centre_m == b.centre_m
+                && a.size_m == b.size_m
+                && a.tilt_deg == b.tilt_deg
+        };
+        self.lamp.position_m == other.lamp.position_m
+            && self.planes.len() == other.planes.len()
+            && self.planes.iter().zip(&other.planes).all(plane)
+    }
+}
+
 /// The rear-lit screen: the rectangle `width_m` × `height_m` in z = 0, centred on the origin.
 #[derive(Clone, Debug)]
 pub struct Screen {

@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use anyhow::Result;
 use kelir_render::encode::{self, Attributes};
-use kelir_render::exposure::{of_scene, white};
-use kelir_render::{Frame, Stats, file, renderer};
+use kelir_render::{Frame, Meter, Stats, exposure, file, renderer};
 use serde::Serialize;
 
 use super::drawing::{Drawing, StatsFormat, render_error};
 use crate::bad_input;
 use crate::output::print;
+use crate::progress;
 
 /// Arguments of `kelir render`.
 #[derive(clap::Args)]
@@ -56,8 +56,11 @@ pub fn run(args: Args) -> Result<()> {
 
     let begun = Instant::now();
     // The same exposure for a still and for every frame of the scene's timeline.
-    let white = white([&theatre], &view).max(of_scene(&scene, &view, true));
-    let frame = renderer.radiance(&theatre, &view).map_err(render_error)?;
+    let white = exposure::of_scene(&scene, &view, true).max(exposure::white([&theatre], &view));
+    let meter = Meter::default();
+    renderer.watch(&meter);
+    let frame = progress::watch(&meter, technique.name(), || renderer.radiance(&theatre, &view))
+        .map_err(render_error)?;
     let bytes = match container {
         Container::Png => encode::png(&encode::display(&frame, white), frame.size),
         Container::Exr => {

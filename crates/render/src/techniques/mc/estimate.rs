@@ -11,7 +11,7 @@ use super::native::Sampler;
 use super::plan::Plan;
 use super::points::{Points, REPLICATES};
 use crate::albedo::PixelAlbedo;
-use crate::{RenderError, ambient};
+use crate::{Meter, RenderError, ambient};
 
 /// Everything that a row needs.
 pub struct Estimator<'a> {
@@ -26,6 +26,8 @@ pub struct Estimator<'a> {
     pub points: &'a Points,
     pub skip: bool,
     pub layers: bool,
+    /// Told of each row that is done.
+    pub meter: &'a Meter,
 }
 
 /// One estimate to sample: the light of one emitter through planes `first..end` at one pixel, and the product of codes
@@ -101,7 +103,12 @@ impl Estimate {
 impl Estimator<'_> {
     /// The given rows, on all cores; the result does not depend on how many there are.
     pub fn rows(&self, rows: &[usize]) -> Vec<Row> {
-        rows.par_iter().map(|j| self.row(*j, &mut |job| self.native(job))).collect()
+        let row = |j: &usize| {
+            let row = self.row(*j, &mut |job| self.native(job));
+            self.meter.add(1);
+            row
+        };
+        rows.par_iter().map(row).collect()
     }
 
     /// The given rows with sums from `draw`, which is handed the jobs of many rows at a time: `channels * REPLICATES`
@@ -143,6 +150,7 @@ impl Estimator<'_> {
                     })
                 })
             }));
+            self.meter.add(rows.len());
         }
         Ok(done)
     }

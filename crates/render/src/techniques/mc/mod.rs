@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::encode::{Srgb, pack};
 use crate::simd::Isa;
-use crate::{Backend, Frame, Layer, RenderError, Renderer, Stats, View, albedo, irradiance};
+use crate::{Backend, Frame, Layer, Meter, RenderError, Renderer, Stats, View, albedo, irradiance};
 use bounds::Padded;
 use estimate::{Estimator, Row};
 use points::{Points, REPLICATES};
@@ -94,6 +94,7 @@ struct Mc {
     gpu: Option<gpu::Sampler>,
     /// Lights that stand still, in place of random points.
     lattice: Option<Arc<Points>>,
+    meter: Meter,
 }
 
 /// The renderer of `lights` × `lights` point lights an emitter, seen from `subpixels` × `subpixels` points of an `area`
@@ -110,7 +111,15 @@ pub(crate) fn lattice(
 
 impl Mc {
     fn new(knobs: Knobs, gpu: Option<gpu::Sampler>) -> Self {
-        Self { knobs, masks: HashMap::new(), points: None, lit: Vec::new(), gpu, lattice: None }
+        Self {
+            knobs,
+            masks: HashMap::new(),
+            points: None,
+            lit: Vec::new(),
+            gpu,
+            lattice: None,
+            meter: Meter::default(),
+        }
     }
 
     /// Draws all rows; `layers` asks for more than the radiance.
@@ -132,7 +141,7 @@ impl Mc {
         let albedo = albedo::on_grid(&theatre.screen, view);
         let lit: Vec<&[f64]> = self.lit.iter().map(|(_, image)| image.as_slice()).collect();
         stats.steps_ms.push(("prepare".into(), started.elapsed().as_secs_f64() * 1e3));
-        let gpu = &mut self.gpu;
+        let (gpu, meter) = (&mut self.gpu, &self.meter);
         let mut draw = |points: &Points, rows: &[usize]| {
             let estimator = Estimator {
                 theatre,
@@ -144,6 +153,7 @@ impl Mc {
                 points,
                 skip: view.skip,
                 layers,
+                meter,
             };
             let Some(gpu) = gpu else { return Ok(estimator.rows(rows)) };
             let ids: Vec<_> = theatre.planes.iter().map(|p| p.mask.id).collect();
@@ -162,6 +172,7 @@ impl Mc {
             (_, Some(points)) if points.samples == samples => points.clone(),
             _ => Arc::new(Points::new(self.knobs.seed, samples)),
         };
+        self.meter.begin(view.size[1]);
         let rows = draw(&points, &(0..view.size[1]).collect::<Vec<_>>())?;
         self.points = Some(points);
         stats.steps_ms.push(("sample".into(), clock.elapsed().as_secs_f64() * 1e3));
@@ -250,6 +261,10 @@ impl Renderer for Mc {
             }
         }
         Ok(stats)
+    }
+
+    fn watch(&mut self, meter: &Meter) {
+        self.meter = meter.clone();
     }
 
     fn adapter(&self) -> String {

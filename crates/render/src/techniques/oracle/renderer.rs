@@ -5,12 +5,13 @@ use rayon::prelude::*;
 
 use super::{Knobs, Point, Visibility, visibility};
 use crate::project::pixel_m;
-use crate::{Frame, Layer, RenderError, Renderer, Stats, View, albedo, ambient, encode, irradiance};
+use crate::{Frame, Layer, Meter, RenderError, Renderer, Stats, View, albedo, ambient, encode, irradiance};
 
 /// Draws with [`visibility`] at every pixel.
 #[derive(Debug)]
 pub struct Oracle {
     knobs: Knobs,
+    meter: Meter,
 }
 
 /// One pixel: radiance, then per emitter both visibilities.
@@ -19,7 +20,7 @@ type PixelValue = ([f64; 3], Vec<Visibility>);
 impl Oracle {
     /// For `knobs`.
     pub fn new(knobs: Knobs) -> Self {
-        Self { knobs }
+        Self { knobs, meter: Meter::default() }
     }
 
     fn check(theatre: &Theatre, view: &View) -> Result<(), RenderError> {
@@ -44,8 +45,15 @@ impl Oracle {
     ) -> Result<Vec<PixelValue>, RenderError> {
         Self::check(theatre, view)?;
         let albedo = albedo::on_grid(&theatre.screen, view);
-        let pixels: Vec<_> = rows.flat_map(|j| columns.clone().map(move |i| (i, j))).collect();
-        Ok(pixels.into_par_iter().map(|(i, j)| self.pixel(theatre, view, &albedo, i, j)).collect())
+        self.meter.begin(rows.len());
+        let row = |j: usize| -> Vec<PixelValue> {
+            let row =
+                columns.clone().into_par_iter().map(|i| self.pixel(theatre, view, &albedo, i, j)).collect();
+            self.meter.add(1);
+            row
+        };
+        // Rows and columns both: crops may be narrow either way.
+        Ok(rows.into_par_iter().map(row).collect::<Vec<_>>().concat())
     }
 
     fn pixel(
@@ -148,6 +156,10 @@ impl Renderer for Oracle {
         let frame = self.radiance(theatre, view)?;
         out.copy_from_slice(&encode::display(&frame, white));
         Ok(frame.stats)
+    }
+
+    fn watch(&mut self, meter: &Meter) {
+        self.meter = meter.clone();
     }
 
     fn adapter(&self) -> String {
