@@ -5,10 +5,10 @@
 //! [`CLOSED_FORM_FROM`] steradians the integral is taken by tensor Gauss rules instead, on pieces small enough for
 //! their error bound ([`order`]). A disk's closed form has an arrangement without cancellation.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
-use kelir_scene::{EmitterShape, Screen};
+use kelir_scene::{EmitterShape, Screen, Theatre};
 use rayon::prelude::*;
 
 use crate::project::pixel_m;
@@ -247,6 +247,67 @@ pub fn unit_image(shape: &EmitterShape, lamp_m: DVec3, screen: &Screen, size: [u
     out
 }
 
+/// Means of E⁰ over the areas of pixels, from its values `image` at their centres: a smooth function's mean is its value plus
+/// (Δ²x + Δ²y) / 24, second differences between neighbours; what is left out is of fourth order in the pixel's angular size.
+fn means_over_pixels(image: &[f64], [width, height]: [usize; 2]) -> Vec<f64> {
+    // Beyond the last second difference of a line they go on in a straight line.
+    let second = |at: &dyn Fn(usize) -> f64, k: usize, n: usize| {
+        let here = |k: usize| at(k - 1) - 2.0 * at(k) + at(k + 1);
+        match k {
+            _ if n < 3 => 0.0,
+            _ if n == 3 => here(1),
+            0 => 2.0 * here(1) - here(2),
+            _ if k + 1 == n => 2.0 * here(n - 2) - here(n - 3),
+            _ => here(k),
+        }
+    };
+    let mut out = vec![0.0; image.len()];
+    out.par_chunks_mut(width).enumerate().for_each(|(j, out)| {
+        for (i, out) in out.iter_mut().enumerate() {
+            let across = second(&|i| image[j * width + i], i, width);
+            let down = second(&|j| image[j * width + i], j, height);
+            *out = image[j * width + i] + (across + down) / 24.0;
+        }
+    });
+    out
+}
+
+/// E⁰ of a lamp's emitters on one view's pixels, kept while lamp, screen and size stay.
+#[derive(Debug, Default)]
+pub(crate) struct UnitImages {
+    /// What an image was made for, its values at pixel centres, and their means over pixels where asked for.
+    kept: Vec<(String, Arc<Vec<f64>>, Option<Arc<Vec<f64>>>)>,
+}
+
+impl UnitImages {
+    /// Brings the images up to date and forgets what is no longer used; `means` asks for [`UnitImages::means`].
+    pub fn update(&mut self, theatre: &Theatre, size: [usize; 2], means: bool) {
+        let lamp_m = theatre.lamp.position_m;
+        let screen = &theatre.screen;
+        let old = std::mem::take(&mut self.kept);
+        for emitter in &theatre.lamp.emitters {
+            let key =
+                format!("{:?} {lamp_m:?} {} {} {size:?}", emitter.shape, screen.width_m, screen.height_m);
+            let (image, mean) = match old.iter().find(|(k, ..)| *k == key) {
+                Some((_, image, mean)) => (image.clone(), mean.clone()),
+                None => (Arc::new(unit_image(&emitter.shape, lamp_m, screen, size)), None),
+            };
+            let mean = mean.or_else(|| means.then(|| Arc::new(means_over_pixels(&image, size))));
+            self.kept.push((key, image, mean));
+        }
+    }
+
+    /// At pixel centres, one image an emitter.
+    pub fn centres(&self) -> Vec<&[f64]> {
+        self.kept.iter().map(|(_, image, _)| image.as_slice()).collect()
+    }
+
+    /// Means over pixels, one image an emitter; values at the centres where means were not asked for.
+    pub fn means(&self) -> Vec<&[f64]> {
+        self.kept.iter().map(|(_, image, mean)| mean.as_ref().unwrap_or(image).as_slice()).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -297,6 +358,27 @@ mod tests {
             }
         }
         assert_eq!(strides, [4, 4, 4, 1, 1], "both ways are tried");
+    }
+
+    /// Against 64 × 64 midpoints in each pixel; the value at the centre is far off (negative control).
+    #[test]
+    fn means_over_pixels_are_means() {
+        let screen = Screen { width_m: 1.6, height_m: 0.9, albedo: kelir_scene::Albedo::Uniform([1.0; 3]) };
+        let size = [48, 27];
+        for shape in [EmitterShape::Rectangle { size_m: [0.1, 0.2] }, EmitterShape::Disk { radius_m: 0.05 }] {
+            let lamp = DVec3::new(0.3, -0.1, -1.5);
+            let image = unit_image(&shape, lamp, &screen, size);
+            let means = means_over_pixels(&image, size);
+            let (mut worst, mut at_centres) = (0f64, 0f64);
+            for (i, j) in [(0, 0), (20, 13), (33, 0), (47, 26), (0, 12)] {
+                let part = |k: usize| (k as f64 + 0.5) / 64.0 - 0.5;
+                let at = |k: usize| pixel_m(&screen, size, i as f64 + part(k % 64), j as f64 + part(k / 64));
+                let mean = (0..4096).map(|k| unit(&shape, lamp, at(k))).sum::<f64>() / 4096.0;
+                worst = worst.max((means[j * size[0] + i] / mean - 1.0).abs());
+                at_centres = at_centres.max((image[j * size[0] + i] / mean - 1.0).abs());
+            }
+            assert!(worst < 1e-7 && at_centres > 5e-5, "{worst:e} {at_centres:e}");
+        }
     }
 
     #[test]

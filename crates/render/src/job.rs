@@ -153,7 +153,7 @@ pub struct StandardError {
 
 /// Sums of the standard errors in a frame's SE layers.
 #[derive(Default)]
-struct Spread {
+pub(crate) struct Spread {
     squares: f64,
     count: usize,
     max: f64,
@@ -163,7 +163,12 @@ struct Spread {
 
 impl Spread {
     /// Adds the pixels that `counted` takes, as irradiance.
-    fn add(&mut self, frame: &Frame, albedo: &albedo::PixelAlbedo, counted: impl Fn(usize, f64) -> bool) {
+    pub(crate) fn add(
+        &mut self,
+        frame: &Frame,
+        albedo: &albedo::PixelAlbedo,
+        counted: impl Fn(usize, f64) -> bool,
+    ) {
         for (c, name) in ["SE.R", "SE.G", "SE.B"].iter().enumerate() {
             let Some(layer) = frame.layers.iter().find(|l| l.name == *name) else { continue };
             self.known = true;
@@ -178,7 +183,7 @@ impl Spread {
         }
     }
 
-    fn root_mean_square(&self) -> f64 {
+    pub(crate) fn root_mean_square(&self) -> f64 {
         (self.squares / self.count.max(1) as f64).sqrt()
     }
 
@@ -189,7 +194,7 @@ impl Spread {
     }
 }
 
-fn named<S: Serializer>(errors: &Errors, serializer: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn named<S: Serializer>(errors: &Errors, serializer: S) -> Result<S::Ok, S::Error> {
     let mut s = serializer.serialize_struct("Errors", 5)?;
     s.serialize_field("count", &errors.count)?;
     s.serialize_field("bias", &errors.bias)?;
@@ -345,7 +350,7 @@ fn draw(
 }
 
 /// Irradiance at the back of the screen and at its front the albedo: E = π L / albedo, NaN where the screen is black.
-fn irradiance(frame: &Frame, albedo: &albedo::PixelAlbedo) -> Vec<f64> {
+pub(crate) fn irradiance(frame: &Frame, albedo: &albedo::PixelAlbedo) -> Vec<f64> {
     let channel = |c: usize| {
         frame.radiance[c]
             .iter()
@@ -394,7 +399,7 @@ fn measure(
 }
 
 /// The brightest unshadowed irradiance over pixels and channels.
-fn brightest(theatre: &Theatre, view: &View) -> f64 {
+pub(crate) fn brightest(theatre: &Theatre, view: &View) -> f64 {
     let lamp = &theatre.lamp;
     let units: Vec<_> = lamp
         .emitters

@@ -5,6 +5,7 @@
 //! unshadowed emitter ([`irradiance`]), where a point of the screen sees the emitter on an occluder plane
 //! ([`project`]), the albedo on the pixel grid ([`albedo`]) and the exposure ([`exposure`]).
 
+pub mod accuracy;
 pub mod albedo;
 pub mod ambient;
 pub mod bench;
@@ -25,7 +26,7 @@ pub mod techniques;
 
 pub use exposure::white;
 pub use frame::*;
-pub use techniques::{Backend, Technique, mc, oracle, pa, points, renderer};
+pub use techniques::{Backend, Technique, mc, oracle, pa, pcss, points, renderer};
 
 /// Why nothing was drawn.
 #[derive(Debug, thiserror::Error)]

@@ -7,6 +7,7 @@ use kelir_render::file;
 
 use super::drawing::{Drawing, render_error};
 
+mod accuracy;
 mod frames;
 mod numerics;
 
@@ -27,6 +28,8 @@ pub enum Command {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
+    /// Error against time: every technique over its knobs, against Monte Carlo and, on crops, the oracle.
+    Accuracy(accuracy::Args),
     /// How exact the numbers are, against values that were not derived from them: the renderer's stress cases against the oracle, unless
     /// an option asks for something else.
     Numerics {
@@ -51,6 +54,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Frames { drawing, frames, scaling, json } => {
             frames::run(&drawing, frames, scaling, json.as_deref())
         }
+        Command::Accuracy(args) => accuracy::run(&args),
         Command::Numerics { stats: true, .. } => numerics::statistics(),
         Command::Numerics { curves: true, json, .. } => numerics::curves(json.as_deref()),
         Command::Numerics { most, json, .. } => numerics::renderer(most, json.as_deref()),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
-use kelir_render::{Backend, Pixel, RenderError, Technique, View, mc, oracle, pa, points};
+use kelir_render::{Backend, Pixel, RenderError, Technique, View, mc, oracle, pa, pcss, points};
 use kelir_scene::{Scene, Theatre};
 
 use crate::bad_input;
@@ -14,13 +14,14 @@ use crate::bad_input;
 pub struct Drawing {
     /// Scene file (TOML).
     pub scene: PathBuf,
-    /// What draws: pa (summed-area tables), mc (Monte Carlo, the ground truth), points (point lights), oracle (slow f64 sums).
+    /// What draws: pa (summed-area tables), mc (Monte Carlo, the ground truth), points (point lights),
+    /// pcss (percentage-closer soft shadows), oracle (slow f64 sums).
     #[arg(long, value_enum)]
     pub technique: TechniqueName,
     /// Samples a pixel (mc), rounded up to a multiple of 16 replicates.
     #[arg(long, default_value_t = 64)]
     pub spp: u32,
-    /// Seed of the sample points (mc): same seed and count, same bytes.
+    /// Seed of the sample points (mc, pcss): same seed and count, same bytes.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// In place of --spp: enough samples for this root mean square error over penumbra, in units of full scale (mc).
@@ -44,12 +45,21 @@ pub struct Drawing {
     /// Tables of the puppets themselves, or of a shadow map drawn from the lamp, as in the paper (pa).
     #[arg(long, value_enum, default_value = "exact")]
     pub variant: VariantName,
-    /// Samples a side of that shadow map (pa).
+    /// Samples a side of that shadow map (pa), or of each puppet's (pcss).
     #[arg(long, value_name = "N", default_value_t = pa::Knobs::default().map_size)]
     pub map_size: u32,
     /// Lattice points per distance of a puppet for the dome's light (pa).
     #[arg(long, value_name = "N", default_value_t = pa::Knobs::default().dome_steps)]
     pub dome_steps: u32,
+    /// Samples of the search for blockers (pcss).
+    #[arg(long, value_name = "N", default_value_t = pcss::Knobs::default().blocker_samples)]
+    pub blocker_samples: u32,
+    /// Samples of the filter (pcss).
+    #[arg(long, value_name = "N", default_value_t = pcss::Knobs::default().filter_samples)]
+    pub filter_samples: u32,
+    /// Depth bias: a puppet no further than this before the screen casts no shadow (pcss).
+    #[arg(long, value_name = "METRES", default_value_t = pcss::Knobs::default().bias_m)]
+    pub bias: f64,
     /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 1920 wide.
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[usize; 2]>,
@@ -83,6 +93,8 @@ pub enum TechniqueName {
     Mc,
     /// Point lights averaged.
     Points,
+    /// Percentage-closer soft shadows.
+    Pcss,
     /// f64 sums.
     Oracle,
 }
@@ -141,6 +153,13 @@ impl Drawing {
             TechniqueName::Points => {
                 Technique::Points(points::Knobs { lights: self.lights, ..points::Knobs::default() })
             }
+            TechniqueName::Pcss => Technique::Pcss(pcss::Knobs {
+                blocker_samples: self.blocker_samples,
+                filter_samples: self.filter_samples,
+                map_size: self.map_size,
+                seed: self.seed,
+                bias_m: self.bias,
+            }),
             TechniqueName::Oracle => Technique::Oracle(oracle::Knobs::default()),
         }
     }
@@ -170,13 +189,15 @@ pub fn render_error(error: RenderError) -> anyhow::Error {
     }
 }
 
-fn parse_size(text: &str) -> Result<[usize; 2], String> {
+/// WIDTHxHEIGHT.
+pub fn parse_size(text: &str) -> Result<[usize; 2], String> {
     let rule = || format!("{text:?} is no size: write WIDTHxHEIGHT in pixels, as in 1920x1080");
     let (width, height) = text.split_once('x').ok_or_else(rule)?;
     let size = [width.parse().map_err(|_| rule())?, height.parse().map_err(|_| rule())?];
     if size.contains(&0) { Err(rule()) } else { Ok(size) }
 }
 
-fn parse_backend(text: &str) -> Result<Backend, String> {
+/// auto, cpu or gpu.
+pub fn parse_backend(text: &str) -> Result<Backend, String> {
     text.parse().map_err(|error: RenderError| error.to_string())
 }

@@ -3,6 +3,7 @@
 pub mod mc;
 pub mod oracle;
 pub mod pa;
+pub mod pcss;
 pub mod points;
 
 use serde::{Deserialize, Serialize};
@@ -19,6 +20,8 @@ pub enum Technique {
     Mc(mc::Knobs),
     /// Point lights averaged.
     Points(points::Knobs),
+    /// Percentage-closer soft shadows (Fernando).
+    Pcss(pcss::Knobs),
     /// Slow f64 sums without random numbers, for crops and tests.
     Oracle(oracle::Knobs),
 }
@@ -30,6 +33,7 @@ impl Technique {
             Self::Pa(_) => "pa",
             Self::Mc(_) => "mc",
             Self::Points(_) => "points",
+            Self::Pcss(_) => "pcss",
             Self::Oracle(_) => "oracle",
         }
     }
@@ -67,6 +71,7 @@ pub fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Rende
         Technique::Pa(knobs) => pa::renderer(knobs, backend),
         Technique::Mc(knobs) => mc::renderer(knobs, backend),
         Technique::Points(knobs) => points::renderer(knobs, backend),
+        Technique::Pcss(knobs) => pcss::renderer(knobs, backend),
         Technique::Oracle(knobs) => oracle::renderer(knobs),
     }
 }

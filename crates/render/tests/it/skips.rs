@@ -2,7 +2,7 @@
 
 use kelir_render::pa::{Native, Skips, Variant, Weights};
 use kelir_render::{
-    Backend, Pixel, Renderer, Stats, Technique, View, mc, oracle, pa, points, renderer, white,
+    Backend, Pixel, Renderer, Stats, Technique, View, mc, oracle, pa, pcss, points, renderer, white,
 };
 use kelir_scene::{Ambient, EmitterShape, Theatre};
 
@@ -48,6 +48,7 @@ fn techniques() -> Vec<Technique> {
         pa(pa::Knobs { variant: Variant::ShadowMap, map_size: 128, ..pa::Knobs::default() }),
         Technique::Mc(mc::Knobs { spp: 16, ..mc::Knobs::default() }),
         Technique::Points(points::Knobs { lights: 4, ..points::Knobs::default() }),
+        Technique::Pcss(pcss::Knobs { filter_samples: 16, map_size: 256, ..pcss::Knobs::default() }),
     ]
 }
 
@@ -106,9 +107,12 @@ fn every_feature_with_every_technique() {
                 let dark = u64::from(name.starts_with("a black emitter"));
                 assert_eq!(stats.counts["emitters_dark"], dark, "{name}");
             }
+            if matches!(technique, Technique::Pcss(_)) && name != "nothing on the beam" {
+                assert!(stats.counts["searches_skipped"] > 0, "{name}");
+            }
         }
     }
-    assert!(drawn >= 70, "{drawn}");
+    assert!(drawn >= 84, "{drawn}");
 }
 
 /// Each of PA's skips alone: without it the same bytes, and a count that is above zero exactly where the theatre offers it.

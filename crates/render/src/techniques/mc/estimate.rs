@@ -20,6 +20,8 @@ pub struct Estimator<'a> {
     pub masks: &'a [Arc<Padded>],
     /// E⁰ at unit radiance, one image an emitter.
     pub lit: &'a [&'a [f64]],
+    /// Its means over pixels, where samples spread over them.
+    pub means: &'a [&'a [f64]],
     /// Radiance of each source: the emitters, then the dome where there is one.
     pub radiance: Vec<[f64; 3]>,
     pub albedo: &'a PixelAlbedo,
@@ -219,7 +221,8 @@ impl Estimator<'_> {
         }
         let (x, y, first, end) = (i as u32, j as u32, planes.start as u32, planes.end as u32);
         let sums = source(&Job { x, y, emitter: k as u32, first, end, v0_r, v0_g, v0_b });
-        let unit = if self.plan.geometric { lit } else { self.plan.emitters[k].scale };
+        let over_mean = self.means.get(k).map_or(1.0, |means| lit / means[j * self.plan.size[0] + i]);
+        let unit = if self.plan.geometric { lit } else { self.plan.emitters[k].scale * over_mean };
         let scale = unit / (self.points.samples as f64 * full);
         (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none() && !dark)
     }

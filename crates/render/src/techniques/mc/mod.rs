@@ -5,17 +5,20 @@
 //!
 //! > E / L = E⁰ · V₀ + A · mean((V − V₀) · cosθ cosθ / r²)
 //!
+//! With E⁰ at the pixel's centre; in `area` pixels, whose mean estimates the pixel's mean E, A is scaled by E⁰ over its own
+//! mean. So V is the pixel's mean E over its mean E⁰, as the oracle has it, and a lit pixel is exactly E⁰.
+//!
 //! Where the masks' bounds say that everything a pixel can see has one transmittance, V₀ is that transmittance and the
 //! mean is exactly zero, sampled or not: no samples are spent there and the bytes are the same. Elsewhere V₀ = 0. No
 //! pilot run decides anything, so the estimate stays unbiased.
 
-mod bounds;
+pub(crate) mod bounds;
 mod budget;
 mod estimate;
 mod gpu;
 mod native;
 mod plan;
-mod points;
+pub(crate) mod points;
 mod tilted;
 
 use std::collections::HashMap;
@@ -26,8 +29,9 @@ use kelir_scene::{Ambient, Theatre};
 use serde::{Deserialize, Serialize};
 
 use crate::encode::{Srgb, pack};
+use crate::irradiance::UnitImages;
 use crate::simd::Isa;
-use crate::{Backend, Frame, Layer, Meter, RenderError, Renderer, Stats, View, albedo, irradiance};
+use crate::{Backend, Frame, Layer, Meter, Pixel, RenderError, Renderer, Stats, View, albedo};
 use bounds::Padded;
 use estimate::{Estimator, Row};
 use points::{Points, REPLICATES};
@@ -88,8 +92,8 @@ struct Mc {
     knobs: Knobs,
     masks: HashMap<u64, Arc<Padded>>,
     points: Option<Arc<Points>>,
-    /// E⁰ of each emitter at unit radiance, and what it was made for.
-    lit: Vec<(String, Arc<Vec<f64>>)>,
+    /// E⁰ of each emitter at unit radiance.
+    lit: UnitImages,
     /// `None` draws on the CPU.
     gpu: Option<gpu::Sampler>,
     /// Lights that stand still, in place of random points.
@@ -115,7 +119,7 @@ impl Mc {
             knobs,
             masks: HashMap::new(),
             points: None,
-            lit: Vec::new(),
+            lit: UnitImages::default(),
             gpu,
             lattice: None,
             meter: Meter::default(),
@@ -133,13 +137,13 @@ impl Mc {
         let started = Instant::now();
         if !view.skip {
             self.masks.clear();
-            self.lit.clear();
+            self.lit = UnitImages::default();
         }
         self.prepare(theatre, view);
         let masks: Vec<_> = theatre.planes.iter().map(|p| self.masks[&p.mask.id].clone()).collect();
         let plan = plan::Plan::new(theatre, view, &masks, self.lattice.is_some())?;
         let albedo = albedo::on_grid(&theatre.screen, view);
-        let lit: Vec<&[f64]> = self.lit.iter().map(|(_, image)| image.as_slice()).collect();
+        let (lit, means) = (self.lit.centres(), self.lit.means());
         stats.steps_ms.push(("prepare".into(), started.elapsed().as_secs_f64() * 1e3));
         let (gpu, meter) = (&mut self.gpu, &self.meter);
         let mut draw = |points: &Points, rows: &[usize]| {
@@ -148,6 +152,7 @@ impl Mc {
                 plan: &plan,
                 masks: &masks,
                 lit: &lit,
+                means: &means,
                 radiance: sources(theatre).map(|(_, radiance)| radiance).collect(),
                 albedo: &albedo,
                 points,
@@ -193,22 +198,9 @@ impl Mc {
         for plane in &theatre.planes {
             self.masks.entry(plane.mask.id).or_insert_with(|| Arc::new(Padded::new(&plane.mask)));
         }
-        let lamp = &theatre.lamp;
-        let old = std::mem::take(&mut self.lit);
-        for emitter in &lamp.emitters {
-            let screen = [theatre.screen.width_m, theatre.screen.height_m];
-            let key = format!("{:?} {:?} {:?} {:?}", emitter.shape, lamp.position_m, screen, view.size);
-            let image = match old.iter().find(|(k, _)| *k == key) {
-                Some((_, image)) => image.clone(),
-                None => Arc::new(irradiance::unit_image(
-                    &emitter.shape,
-                    lamp.position_m,
-                    &theatre.screen,
-                    view.size,
-                )),
-            };
-            self.lit.push((key, image));
-        }
+        // Sampled over a pixel, E is its mean over the pixel's area.
+        let means = view.pixel == Pixel::Area && self.lattice.is_none();
+        self.lit.update(theatre, view.size, means);
     }
 }
 

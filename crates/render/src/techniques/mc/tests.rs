@@ -5,7 +5,7 @@ use glam::DVec3;
 use kelir_scene::*;
 
 use super::*;
-use crate::Pixel;
+use crate::irradiance;
 
 /// A half-plane: opaque for x < 0.
 fn edge(channels: usize) -> Mask {
@@ -423,4 +423,46 @@ fn no_difference_from_the_oracle_but_a_lamp_one_percent_larger() {
         let control = agreement(&scene, &larger, &view);
         assert!(control < 0.01, "{pixel:?}: p = {control}");
     }
+}
+
+/// Over a pixel, visibility is the mean of E over the mean of E⁰, in MC as in the oracle. Neither the mean of E / E⁰ nor the
+/// mean of E over E⁰ at the centre is the same.
+#[test]
+fn over_a_pixel_visibility_is_mean_over_mean() {
+    let mut scene = theatre(edge(1), Ambient::None);
+    scene.lamp.emitters.remove(0);
+    scene.lamp.position_m.x = 0.4;
+    scene.planes[0].size_m[1] = 2.0;
+    let view = view(Pixel::Area);
+    let frame = draw(&scene, &view, 1 << 14, 1);
+    let (shape, lamp) = (scene.lamp.emitters[0].shape, scene.lamp.position_m);
+    // Mean differences from the definition over all penumbra pixels: of MC, of the oracle, and of two other definitions.
+    let (mut sums, mut tested) = ([0.0; 4], 0.0);
+    for (pixel, drawn) in layer(&frame, "Virr.outer").iter().enumerate() {
+        if !(0.01..0.99).contains(drawn) {
+            continue;
+        }
+        let (i, j) = (pixel % view.size[0], pixel / view.size[0]);
+        // The edge is vertical: midpoints are dense along x.
+        let [mut e, mut lit, mut ratio] = [0.0; 3];
+        for k in 0..256 * 4 {
+            let part = |k: usize, n: usize| (k as f64 + 0.5) / n as f64 - 0.5;
+            let at = [i as f64 + part(k % 256, 256), j as f64 + part(k / 256, 4)];
+            let p = crate::project::pixel_m(&scene.screen, view.size, at[0], at[1]);
+            let seen = crate::oracle::visibility(&scene, 0, crate::oracle::Point::At(p), 1.0).irradiance[0];
+            let unit = irradiance::unit(&shape, lamp, p);
+            (e, lit, ratio) = (e + seen * unit, lit + unit, ratio + seen);
+        }
+        let centre = crate::project::pixel_m(&scene.screen, view.size, i as f64, j as f64);
+        let point = crate::oracle::Point::pixel(&scene, &view, i, j);
+        let oracle = crate::oracle::visibility(&scene, 0, point, 1e-6).irradiance[0];
+        let at_centre = e / 1024.0 / irradiance::unit(&shape, lamp, centre);
+        let differences = [f64::from(*drawn), oracle, ratio / 1024.0, at_centre].map(|v| v - e / lit);
+        sums.iter_mut().zip(differences).for_each(|(s, d)| *s += d);
+        assert!((oracle - e / lit).abs() < 1e-5, "{oracle} {}", e / lit);
+        tested += 1.0;
+    }
+    let [mc, oracle, of_ratios, at_centre] = sums.map(|s: f64| (s / tested).abs());
+    assert!(tested > 40.0 && mc < 1.5e-5 && oracle < 1e-6, "{tested} {mc:e} {oracle:e}");
+    assert!(of_ratios > 4e-5 && at_centre > 4e-5, "{of_ratios:e} {at_centre:e}");
 }

@@ -3,9 +3,11 @@
 //! Every plane's texel edges are projected through the screen point onto the lamp's plane. Between neighbouring edges all
 //! masks are constant, so both visibilities are finite sums over such cells: of areas (geometric), or of Lambert's
 //! formula (irradiance). An `area` pixel seen through one plane is a finite sum too: a texel's overlap with the box,
-//! averaged over the pixel, has a closed form. Several planes, and irradiance, are averaged over the pixel by midpoints,
-//! whose number is doubled until two levels differ by less than the tolerance. So are disks (cut into strips) and tilted
-//! planes (texels projected onto the lamp's plane and clipped to each piece of the emitter).
+//! averaged over the pixel, has a closed form. Several planes, and irradiance, are averaged over the pixel piece by piece:
+//! it is cut where a texel line crosses the emitter's edge or another plane's line, and between cuts both visibilities are
+//! smooth, so that two Gauss points a side serve. Disks (cut into strips) and tilted planes (texels projected onto the lamp's
+//! plane and clipped to each piece of the emitter) are averaged by midpoints, whose number is doubled until two levels differ
+//! by less than the tolerance.
 
 mod pieces;
 mod renderer;
@@ -15,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{RenderError, Renderer};
 
-pub use renderer::Oracle;
+pub use renderer::{BothModels, Oracle};
 pub use visibility::{Point, Visibility, dome, geometric, visibility};
 
 /// What can be turned.

@@ -17,6 +17,17 @@ pub struct Oracle {
 /// One pixel: radiance, then per emitter both visibilities.
 type PixelValue = ([f64; 3], Vec<Visibility>);
 
+/// One pixel by both models.
+#[derive(Clone, Debug)]
+pub struct BothModels {
+    /// Radiance that E⁰ · Vgeo gives.
+    pub geometric: [f64; 3],
+    /// True radiance.
+    pub irradiance: [f64; 3],
+    /// One an emitter.
+    pub visibilities: Vec<Visibility>,
+}
+
 impl Oracle {
     /// For `knobs`.
     pub fn new(knobs: Knobs) -> Self {
@@ -43,6 +54,19 @@ impl Oracle {
         columns: std::ops::Range<usize>,
         rows: std::ops::Range<usize>,
     ) -> Result<Vec<PixelValue>, RenderError> {
+        let geometric = self.knobs.geometric;
+        let one = |v: BothModels| (if geometric { v.geometric } else { v.irradiance }, v.visibilities);
+        Ok(self.both_models(theatre, view, columns, rows)?.into_iter().map(one).collect())
+    }
+
+    /// The same by both models, whichever the knobs ask for.
+    pub fn both_models(
+        &self,
+        theatre: &Theatre,
+        view: &View,
+        columns: std::ops::Range<usize>,
+        rows: std::ops::Range<usize>,
+    ) -> Result<Vec<BothModels>, RenderError> {
         Self::check(theatre, view)?;
         let albedo = albedo::on_grid(&theatre.screen, view);
         self.meter.begin(rows.len());
@@ -63,7 +87,7 @@ impl Oracle {
         albedo: &albedo::PixelAlbedo,
         i: usize,
         j: usize,
-    ) -> PixelValue {
+    ) -> BothModels {
         let point = Point::pixel(theatre, view, i, j);
         let centre = pixel_m(&theatre.screen, view.size, i as f64, j as f64);
         let emitters = 0..theatre.lamp.emitters.len();
@@ -95,7 +119,7 @@ impl Oracle {
             }
             _ => [0.0; 3],
         };
-        let radiance = [0, 1, 2].map(|c| {
+        let radiance = |geometric: bool, c: usize| {
             let weight = |e: usize| theatre.lamp.emitters[e].radiance[c] * units[e];
             let all: f64 = emitters.clone().map(weight).sum();
             let albedo = f64::from(albedo.at(c, i + j * view.size[0]));
@@ -104,8 +128,7 @@ impl Oracle {
                 return ambient_light;
             }
             let mean = |of: &[Visibility]| {
-                let one =
-                    |e: usize| if self.knobs.geometric { of[e].geometric[c] } else { of[e].irradiance[c] };
+                let one = |e: usize| if geometric { of[e].geometric[c] } else { of[e].irradiance[c] };
                 emitters.clone().map(|e| weight(e) * one(e)).sum::<f64>() / all
             };
             let lit = albedo * all / std::f64::consts::PI;
@@ -118,8 +141,9 @@ impl Oracle {
                 _ => v,
             };
             lit * shade + ambient_light
-        });
-        (radiance, visibilities)
+        };
+        let [geometric, irradiance] = [true, false].map(|g| [0, 1, 2].map(|c| radiance(g, c)));
+        BothModels { geometric, irradiance, visibilities }
     }
 }
 

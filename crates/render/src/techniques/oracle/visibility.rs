@@ -6,6 +6,9 @@ use kelir_scene::{EmitterShape, Plane, Theatre};
 use super::pieces;
 use crate::{Pixel, View, irradiance, project::pixel_m};
 
+/// Most pieces that a pixel is cut into.
+const MOST_PIECES: usize = 1 << 10;
+
 /// Where on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Point {
@@ -37,7 +40,7 @@ impl Point {
 pub struct Visibility {
     /// Vgeo: mean transmittance over the emitter's area.
     pub geometric: [f64; 3],
-    /// Virr: E / E⁰.
+    /// Virr: E / E⁰; over an area the mean of E over the mean of E⁰.
     pub irradiance: [f64; 3],
 }
 
@@ -190,45 +193,127 @@ pub fn geometric(theatre: &Theatre, e: usize, point: Point, tolerance: f64) -> [
     }
 }
 
-/// Visibilities of emitter `e`; what is no finite sum (several planes in `area` pixels, disks, tilted planes) to `tolerance`.
-pub fn visibility(theatre: &Theatre, e: usize, point: Point, tolerance: f64) -> Visibility {
-    match point {
-        Point::At(p) => at(theatre, e, p, tolerance),
-        Point::Over(centre, sides) => {
-            let mean = |n: usize| {
-                let mut sum = Visibility::default();
-                for j in 0..n {
-                    for i in 0..n {
-                        let part = (DVec2::new(i as f64, j as f64) + 0.5) / n as f64 - 0.5;
-                        let v = at(theatre, e, centre + part * sides, tolerance);
-                        for c in 0..3 {
-                            sum.geometric[c] += v.geometric[c] / (n * n) as f64;
-                            sum.irradiance[c] += v.irradiance[c] / (n * n) as f64;
-                        }
-                    }
-                }
-                sum
-            };
-            let mut n = 2;
-            let mut result = mean(1);
-            loop {
-                let finer = mean(n);
-                let change = (0..3).fold(0f64, |m, c| {
-                    m.max((finer.geometric[c] - result.geometric[c]).abs())
-                        .max((finer.irradiance[c] - result.irradiance[c]).abs())
-                });
-                result = finer;
-                if change < tolerance || n >= 64 {
-                    break;
-                }
-                n *= 2;
+/// Where, along one axis of a pixel (0..1), what a point sees changes its course: where a texel line crosses the emitter's edge
+/// or a line of another plane. Between two such places both visibilities are smooth. The grids are of the pixel's low and high end.
+fn kinks(low: &[Grid], high: &[Grid], axis: usize, half: f64) -> Vec<f64> {
+    let mut places = vec![0.0, 1.0];
+    let whole = |a: f64, b: f64, count: usize| {
+        let end = |t: f64| t.clamp(-1.0, count as f64 + 1.0);
+        end(a.min(b)).ceil() as i64..=end(a.max(b)).floor() as i64
+    };
+    let texels = |grid: &Grid| [grid.plane.mask.width, grid.plane.mask.height][axis];
+    for (i, (from, to)) in low.iter().zip(high).enumerate() {
+        let (step, start, run) = (from.step[axis], from.origin[axis], to.origin[axis] - from.origin[axis]);
+        let line_at = |edge: f64, origin: f64| (edge - origin) / step;
+        let mut ends = Vec::new();
+        for edge in [-half, half] {
+            let (first, last) = (line_at(edge, start), line_at(edge, start + run));
+            places.extend(whole(first, last, texels(from)).map(|k| (edge - start - step * k as f64) / run));
+            ends.extend([first, last]);
+        }
+        ends.sort_by(f64::total_cmp);
+        for (other, moved) in low[i + 1..].iter().zip(&high[i + 1..]) {
+            for k in whole(ends[0], ends[3], texels(from)) {
+                let at = start + step * k as f64;
+                let first = (at - other.origin[axis]) / other.step[axis];
+                let last = (at + run - moved.origin[axis]) / moved.step[axis];
+                places.extend(whole(first, last, texels(other)).map(|l| (l as f64 - first) / (last - first)));
             }
-            if is_one_box(theatre, e) {
-                result.geometric = over_one_plane(theatre, e, centre, sides);
-            }
-            result
         }
     }
+    places.retain(|t| (0.0..=1.0).contains(t));
+    places.sort_by(f64::total_cmp);
+    places.dedup_by(|a, b| *a - *b < 1e-12);
+    places
+}
+
+/// Sums over points of a pixel: of their shares, and in these of the geometric visibility, of E and of E⁰.
+#[derive(Default)]
+struct Sums {
+    share: f64,
+    geometric: [f64; 3],
+    light: [f64; 3],
+    unit: f64,
+}
+
+impl Sums {
+    fn add(&mut self, share: f64, v: &Visibility, unit: f64) {
+        self.share += share;
+        self.unit += share * unit;
+        for c in 0..3 {
+            self.geometric[c] += share * v.geometric[c];
+            self.light[c] += share * unit * v.irradiance[c];
+        }
+    }
+
+    fn mean(&self) -> Visibility {
+        Visibility {
+            geometric: self.geometric.map(|g| g / self.share),
+            irradiance: self.light.map(|e| e / self.unit),
+        }
+    }
+}
+
+/// Visibilities of emitter `e`; what is no finite sum (disks and tilted planes; pixels in which hundreds of texel lines come and go) to
+/// `tolerance`.
+pub fn visibility(theatre: &Theatre, e: usize, point: Point, tolerance: f64) -> Visibility {
+    let (centre, sides) = match point {
+        Point::At(p) => return at(theatre, e, p, tolerance),
+        Point::Over(centre, sides) => (centre, sides),
+    };
+    let (lamp, shape) = (theatre.lamp.position_m, theatre.lamp.emitters[e].shape);
+    let seen = |sums: &mut Sums, p: DVec2, share: f64| {
+        sums.add(share, &at(theatre, e, p, tolerance), irradiance::unit(&shape, lamp, p));
+    };
+    let upright = theatre.planes.iter().all(|plane| plane.tilt_deg == [0.0; 2]);
+    if upright && matches!(shape, EmitterShape::Rectangle { .. }) {
+        let grids =
+            |p: DVec2| theatre.planes.iter().map(|plane| Grid::new(plane, lamp, p)).collect::<Vec<_>>();
+        let low = centre - 0.5 * sides;
+        let (from, to) = (grids(low), grids(low + sides));
+        let [xs, ys] = [0, 1].map(|axis| kinks(&from, &to, axis, shape.half_extent_m()[axis]));
+        if xs.len() * ys.len() <= MOST_PIECES {
+            // Two Gauss points a side of each piece: exact for cubics, and the pieces are all but bilinear.
+            let mut sums = Sums::default();
+            for y in ys.windows(2) {
+                for x in xs.windows(2) {
+                    let (from, size) = (DVec2::new(x[0], y[0]), DVec2::new(x[1] - x[0], y[1] - y[0]));
+                    for corner in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
+                        let at = from + size * (0.5 + 0.5 / 3f64.sqrt() * DVec2::from(corner));
+                        seen(&mut sums, low + at * sides, 0.25 * size.x * size.y);
+                    }
+                }
+            }
+            return sums.mean();
+        }
+    }
+    let mean = |n: usize| {
+        let mut sums = Sums::default();
+        for k in 0..n * n {
+            let part = (DVec2::new((k % n) as f64, (k / n) as f64) + 0.5) / n as f64 - 0.5;
+            seen(&mut sums, centre + part * sides, 1.0);
+        }
+        sums.mean()
+    };
+    // A coarse lattice can miss every kink, and two such levels agree by chance.
+    let mut n = 8;
+    let mut result = mean(4);
+    loop {
+        let finer = mean(n);
+        let change = (0..3).fold(0f64, |m, c| {
+            m.max((finer.geometric[c] - result.geometric[c]).abs())
+                .max((finer.irradiance[c] - result.irradiance[c]).abs())
+        });
+        result = finer;
+        if change < tolerance || n >= 64 {
+            break;
+        }
+        n *= 2;
+    }
+    if is_one_box(theatre, e) {
+        result.geometric = over_one_plane(theatre, e, centre, sides);
+    }
+    result
 }
 
 /// Share of a uniform dome's irradiance, per channel, that planes parallel to the screen let through to `p`: their grids laid over

@@ -8,7 +8,7 @@ use kelir_scene::{
 };
 
 use super::*;
-use crate::oracle::{Point, visibility};
+use crate::oracle::{Point, geometric, visibility};
 use crate::{Pixel, View, encode, white};
 
 const SIZE: [usize; 2] = [320, 180];
@@ -75,17 +75,16 @@ fn worst(frame: &crate::Frame, oracle: &Theatre, pixel: Pixel) -> f64 {
 fn worst_of(frame: &crate::Frame, oracle: &Theatre, pixel: Pixel, step: [usize; 2]) -> f64 {
     let coloured = frame.layers.len() == 3 * oracle.lamp.emitters.len();
     let view = View { size: frame.size, ..view(pixel) };
-    // What is a finite sum does not depend on it; doubling a pixel's points for an irradiance that nobody asks for takes long.
+    // What is a finite sum does not depend on it.
     let tolerance = if pixel == Pixel::Centre { 1e-5 } else { 1.0 };
     let mut worst = 0f64;
     for j in (2..frame.size[1]).step_by(step[1]) {
         for i in (1..frame.size[0]).step_by(step[0]) {
             for e in 0..oracle.lamp.emitters.len() {
-                let v = visibility(oracle, e, Point::pixel(oracle, &view, i, j), tolerance);
+                let v = geometric(oracle, e, Point::pixel(oracle, &view, i, j), tolerance);
                 for c in 0..if coloured { 3 } else { 1 } {
                     let layer = &frame.layers[if coloured { e * 3 + c } else { e }];
-                    worst =
-                        worst.max((f64::from(layer.values[j * frame.size[0] + i]) - v.geometric[c]).abs());
+                    worst = worst.max((f64::from(layer.values[j * frame.size[0] + i]) - v[c]).abs());
                 }
             }
         }

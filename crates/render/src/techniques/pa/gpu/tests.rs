@@ -4,7 +4,7 @@ use glam::DVec3;
 use kelir_scene::{Albedo, Emitter, EmitterShape, Exposure, Lamp, Plane, Screen};
 
 use super::*;
-use crate::oracle::{Point, visibility};
+use crate::oracle::{Point, geometric};
 use crate::pa::Native;
 use crate::{Backend, Pixel};
 
@@ -138,7 +138,7 @@ fn gpu_agrees_with_the_oracle() {
         for j in (2..90).step_by(7) {
             for i in (1..160).step_by(5) {
                 for e in 0..2 {
-                    let truth = visibility(scene, e, Point::pixel(scene, &view, i, j), 1.0).geometric[0];
+                    let truth = geometric(scene, e, Point::pixel(scene, &view, i, j), 1.0)[0];
                     let of = |f: &Frame| (f64::from(f.layers[e].values[j * 160 + i]) - truth).abs();
                     error = error.max(of(&frame));
                     control = control.max(of(&off));
