@@ -275,8 +275,18 @@ fn means_over_pixels(image: &[f64], [width, height]: [usize; 2]) -> Vec<f64> {
 /// E⁰ of a lamp's emitters on one view's pixels, kept while lamp, screen and size stay.
 #[derive(Debug, Default)]
 pub(crate) struct UnitImages {
-    /// What an image was made for, its values at pixel centres, and their means over pixels where asked for.
-    kept: Vec<(String, Arc<Vec<f64>>, Option<Arc<Vec<f64>>>)>,
+    kept: Vec<UnitImage>,
+}
+
+/// E⁰ of one emitter.
+#[derive(Clone, Debug)]
+struct UnitImage {
+    /// What it was made for.
+    key: String,
+    /// At pixel centres.
+    centres: Arc<Vec<f64>>,
+    /// Means over pixels, where they were asked for.
+    means: Option<Arc<Vec<f64>>>,
 }
 
 impl UnitImages {
@@ -288,23 +298,26 @@ impl UnitImages {
         for emitter in &theatre.lamp.emitters {
             let key =
                 format!("{:?} {lamp_m:?} {} {} {size:?}", emitter.shape, screen.width_m, screen.height_m);
-            let (image, mean) = match old.iter().find(|(k, ..)| *k == key) {
-                Some((_, image, mean)) => (image.clone(), mean.clone()),
-                None => (Arc::new(unit_image(&emitter.shape, lamp_m, screen, size)), None),
-            };
-            let mean = mean.or_else(|| means.then(|| Arc::new(means_over_pixels(&image, size))));
-            self.kept.push((key, image, mean));
+            let mut image = old.iter().find(|image| image.key == key).cloned().unwrap_or_else(|| UnitImage {
+                centres: Arc::new(unit_image(&emitter.shape, lamp_m, screen, size)),
+                means: None,
+                key,
+            });
+            if means && image.means.is_none() {
+                image.means = Some(Arc::new(means_over_pixels(&image.centres, size)));
+            }
+            self.kept.push(image);
         }
     }
 
     /// At pixel centres, one image an emitter.
     pub fn centres(&self) -> Vec<&[f64]> {
-        self.kept.iter().map(|(_, image, _)| image.as_slice()).collect()
+        self.kept.iter().map(|image| image.centres.as_slice()).collect()
     }
 
     /// Means over pixels, one image an emitter; values at the centres where means were not asked for.
     pub fn means(&self) -> Vec<&[f64]> {
-        self.kept.iter().map(|(_, image, mean)| mean.as_ref().unwrap_or(image).as_slice()).collect()
+        self.kept.iter().map(|image| image.means.as_ref().unwrap_or(&image.centres).as_slice()).collect()
     }
 }
 

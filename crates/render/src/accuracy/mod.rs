@@ -19,13 +19,13 @@ use kelir_vision::errors::{Errors, errors};
 use serde::Serialize;
 
 pub use cases::{Case, SEED, all};
-pub use crops::Crop;
+pub use crops::{Crop, Model};
 
 use crate::job::{Spread, brightest, irradiance, named};
 use crate::{
     Backend, Frame, Pixel, RenderError, Technique, View, albedo, encode, exposure, mc, penumbra, renderer,
 };
-use crops::{Model, Truth};
+use crops::Truth;
 use images::Seen;
 
 /// What is measured, and how carefully.

@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 
 use kelir_render::encode::png;
-use kelir_render::{Backend, Pixel, Technique, View, mc, oracle, pa, points, renderer, white};
+use kelir_render::{Backend, Pixel, Technique, View, mc, oracle, pa, pcss, points, renderer, white};
 use kelir_scene::{EmitterShape, Theatre};
 use kelir_vision::errors::{Errors, errors};
 
@@ -20,6 +20,7 @@ fn techniques() -> Vec<(&'static str, Technique, View)> {
         ("pa", Technique::Pa(pa::Knobs::default()), area),
         ("mc", Technique::Mc(mc::Knobs { spp: 64, ..mc::Knobs::default() }), area),
         ("points", Technique::Points(points::Knobs { lights: 16, ..points::Knobs::default() }), area),
+        ("pcss", Technique::Pcss(pcss::Knobs::default()), area),
         (
             "oracle",
             Technique::Oracle(oracle::Knobs { tolerance: 0.1, geometric: false }),

@@ -158,8 +158,11 @@ fn every_scene_that_ships() {
         for theatre in [Some(&scene.still), scene.later.as_ref()].into_iter().flatten() {
             for technique in techniques() {
                 let stats = same_bytes(&scene.name, theatre, &technique, Backend::Cpu).unwrap();
-                let counter =
-                    if let Technique::Pa(_) = technique { "pixels_lit_copied" } else { "samples_skipped" };
+                let counter = match technique {
+                    Technique::Pa(_) => "pixels_lit_copied",
+                    Technique::Pcss(_) => "searches_skipped",
+                    _ => "samples_skipped",
+                };
                 assert!(stats.counts[counter] > 0, "{}, {technique:?}", scene.name);
             }
         }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use kelir_plot::{Axis, Figure, Point, Rule, Series, svg};
-use kelir_render::accuracy::{CaseReport, Measured, Options, Outcome, Report, all, measure};
-use kelir_render::{Backend, Pixel, View, file};
+use kelir_render::accuracy::{CaseReport, Measured, Model, Options, Outcome, Report, all, measure};
+use kelir_render::{Backend, Pixel, Technique, View, file};
 use kelir_scene::Scene;
 
 use crate::commands::drawing::{PixelName, parse_backend, parse_size, render_error};
@@ -205,14 +205,14 @@ fn text(report: &Report) -> String {
 
 fn spp(report: &Report) -> u32 {
     match &report.reference.technique {
-        kelir_render::Technique::Mc(knobs) => knobs.spp,
+        Technique::Mc(knobs) => knobs.spp,
         _ => 0,
     }
 }
 
 fn seed(report: &Report) -> u64 {
     match &report.reference.technique {
-        kelir_render::Technique::Mc(knobs) => knobs.seed,
+        Technique::Mc(knobs) => knobs.seed,
         _ => 0,
     }
 }
@@ -232,7 +232,7 @@ fn on_crops(report: &Report) -> String {
         .iter()
         .filter_map(|result| {
             let crops = measured(result)?.crops.as_ref()?;
-            let geometric = matches!(crops.model, kelir_render::accuracy::Model::Geometric);
+            let geometric = crops.model == Model::Geometric;
             Some(vec![
                 series_name(result, report),
                 result.case.knob.clone(),

@@ -70,7 +70,7 @@ impl Oracle {
         Self::check(theatre, view)?;
         let albedo = albedo::on_grid(&theatre.screen, view);
         self.meter.begin(rows.len());
-        let row = |j: usize| -> Vec<PixelValue> {
+        let row = |j: usize| -> Vec<BothModels> {
             let row =
                 columns.clone().into_par_iter().map(|i| self.pixel(theatre, view, &albedo, i, j)).collect();
             self.meter.add(1);

@@ -82,9 +82,9 @@ fn worst_of(frame: &crate::Frame, oracle: &Theatre, pixel: Pixel, step: [usize; 
         for i in (1..frame.size[0]).step_by(step[0]) {
             for e in 0..oracle.lamp.emitters.len() {
                 let v = geometric(oracle, e, Point::pixel(oracle, &view, i, j), tolerance);
-                for c in 0..if coloured { 3 } else { 1 } {
+                for (c, v) in v.into_iter().enumerate().take(if coloured { 3 } else { 1 }) {
                     let layer = &frame.layers[if coloured { e * 3 + c } else { e }];
-                    worst = worst.max((f64::from(layer.values[j * frame.size[0] + i]) - v[c]).abs());
+                    worst = worst.max((f64::from(layer.values[j * frame.size[0] + i]) - v).abs());
                 }
             }
         }

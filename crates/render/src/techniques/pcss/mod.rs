@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 use crate::encode::{Srgb, pack};
 use crate::irradiance::UnitImages;
 use crate::mc::points::{Points, REPLICATES};
-use crate::{Backend, Frame, Layer, RenderError, Renderer, Stats, View, albedo};
+use crate::{Backend, Frame, Layer, Meter, RenderError, Renderer, Stats, View, albedo};
 use map::{Beam, Map};
 use native::{Row, Shader};
 
@@ -136,11 +136,19 @@ struct Pcss {
     lit: UnitImages,
     /// `None` draws on the CPU.
     gpu: Option<gpu::OnGpu>,
+    meter: Meter,
 }
 
 impl Pcss {
     fn new(knobs: Knobs, gpu: Option<gpu::OnGpu>) -> Self {
-        Self { knobs, maps: Vec::new(), patterns: [None, None], lit: UnitImages::default(), gpu }
+        Self {
+            knobs,
+            maps: Vec::new(),
+            patterns: [None, None],
+            lit: UnitImages::default(),
+            gpu,
+            meter: Meter::default(),
+        }
     }
 
     /// The patterns for every emitter of the lamp.
@@ -205,7 +213,9 @@ impl Pcss {
             albedo: &albedo,
             seed: crate::mc::points::fold(self.knobs.seed),
             layers,
+            meter: &self.meter,
         };
+        self.meter.begin(view.size[1]);
         let rows = match &mut self.gpu {
             None => shader.rows(),
             Some(gpu) => {
@@ -271,6 +281,10 @@ impl Renderer for Pcss {
             }
         }
         Ok(stats)
+    }
+
+    fn watch(&mut self, meter: &Meter) {
+        self.meter = meter.clone();
     }
 
     fn adapter(&self) -> String {

@@ -10,7 +10,7 @@ use super::map::{Beam, Map};
 use super::{Pattern, Patterns};
 use crate::albedo::PixelAlbedo;
 use crate::mc::points::{REPLICATES, stream};
-use crate::{RenderError, View, ambient};
+use crate::{Meter, RenderError, View, ambient};
 
 /// Everything that a row needs.
 pub(crate) struct Shader<'a> {
@@ -29,6 +29,8 @@ pub(crate) struct Shader<'a> {
     pub seed: u32,
     /// Whether the emitters' visibilities are wanted.
     pub layers: bool,
+    /// Told of each row that is done.
+    pub meter: &'a Meter,
 }
 
 /// One pixel's look at one map from one emitter.
@@ -58,14 +60,18 @@ type Source<'a> = &'a mut dyn FnMut(&Job) -> [u32; 3];
 /// The high half of a product of fractions of 2³²: `width * place`.
 #[inline(always)]
 fn scaled(width: i32, place: i32) -> i32 {
-    (i64::from(width) * i64::from(place) >> 32) as i32
+    ((i64::from(width) * i64::from(place)) >> 32) as i32
 }
 
 impl Shader<'_> {
     /// All rows.
     pub fn rows(&self) -> Vec<Row> {
-        let rows = 0..self.view.size[1];
-        rows.into_par_iter().map(|j| self.row(j, &mut |job| self.filtered(job))).collect()
+        let row = |j: usize| {
+            let row = self.row(j, &mut |job| self.filtered(job));
+            self.meter.add(1);
+            row
+        };
+        (0..self.view.size[1]).into_par_iter().map(row).collect()
     }
 
     /// All rows with sums from `draw`, which is handed the jobs of many rows at a time: one sum a channel.
@@ -102,6 +108,7 @@ impl Shader<'_> {
                     [0, 1, 2].map(|c| sums[c.min(self.channels - 1)])
                 })
             }));
+            self.meter.add(rows.len());
         }
         Ok(done)
     }
