@@ -180,3 +180,5 @@ export async function fetchStudies(): Promise<StudyRow[]> {
 }
 
 export const csvAddress = (study: string, file: "responses" | "codebook" | "pairs") => `${admin}/${encodeURIComponent(study)}/${file}.csv`;
+
+export const reportAddress = (study: string, ending: "html" | "md") => `${admin}/${encodeURIComponent(study)}/report.${ending}`;

@@ -2,7 +2,7 @@
 import { h } from "../shared/dom.ts";
 import { clockTime, count, fixed, pValue } from "../shared/format.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
-import { type Block, csvAddress, fetchPaper, fetchReport, fetchResults, fetchStudies, type Participants, type Results, type StudyRow } from "./api.ts";
+import { type Block, csvAddress, fetchPaper, fetchReport, fetchResults, fetchStudies, type Participants, reportAddress, type Results, type StudyRow } from "./api.ts";
 import { copyButton, number, tableText } from "./copy.ts";
 import { gallery } from "./gallery.ts";
 import { drawPaper, PAPER_STUDY } from "./paper.ts";
@@ -183,9 +183,11 @@ function resultsTable(blocks: readonly Block[]): HTMLTableElement {
 
 function data(id: string): Node[] {
   const link = (file: "responses" | "codebook" | "pairs", text: string) => h("a", { href: csvAddress(id, file), download: `${id}-${file}.csv` }, text);
+  const report = (ending: "html" | "md", text: string) => h("a", { href: reportAddress(id, ending), download: `${id}-report.${ending}` }, text);
   return [
-    h("h2", {}, "Data"),
+    h("h2", {}, "Report and data"),
+    h("p", {}, report("html", "Download report (HTML)"), ": everything on this page and the methods, in one file that prints well. ", report("md", "Download report (Markdown)"), ": the same for a repository or a paper."),
     h("p", {}, link("responses", "Responses (CSV)"), ": one row a trial, as it was stored. ", link("codebook", "Codebook (CSV)"), ": what each column means. ", link("pairs", "Pairs (CSV)"), ": the choices as pwcmp reads them."),
-    h("p", { class: "quiet" }, "The same analysis from the command line: ", h("code", {}, `kelir stats ${id} --format csv`)),
+    h("p", { class: "quiet" }, "The same from the command line: ", h("code", {}, `kelir stats ${id} --format csv`), ", ", h("code", {}, `kelir report ${id} -o report.html`)),
   ];
 }

@@ -8,6 +8,7 @@ use crate::results::{pairs_csv, report_of, results_of};
 use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use kelir_report::{Document, Figures, StudyReport, html, markdown};
 use serde_json::{Value, json};
 use std::sync::Arc;
 use std::time::Duration;
@@ -49,14 +50,41 @@ pub(crate) async fn get_results(
     Ok(super::fresh(StatusCode::OK, results_of(&app.store, &loaded.study, &answers).await?))
 }
 
-/// The full report. It resamples participants, which keeps a core busy: one at a time.
+/// The full report as JSON.
 pub(crate) async fn get_report(
     _: Researcher,
     State(app): State<Arc<App>>,
     Parameters(study): Parameters<String>,
 ) -> Result<Response, ApiError> {
+    Ok(super::fresh(StatusCode::OK, judged(&app, study).await?))
+}
+
+/// The full report as one HTML file.
+pub(crate) async fn get_report_html(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(study): Parameters<String>,
+) -> Result<Response, ApiError> {
+    let name = format!("{study}-report.html");
+    let document = Document::of(&judged(&app, study).await?);
+    Ok(download("text/html; charset=utf-8", &name, html(&document)))
+}
+
+/// The full report as one Markdown file, its figures within.
+pub(crate) async fn get_report_md(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(study): Parameters<String>,
+) -> Result<Response, ApiError> {
+    let name = format!("{study}-report.md");
+    let document = Document::of(&judged(&app, study).await?);
+    Ok(download("text/markdown; charset=utf-8", &name, markdown(&document, &Figures::Embedded).text))
+}
+
+/// The full report of a study. It resamples participants, which keeps a core busy: one at a time.
+async fn judged(app: &Arc<App>, study: String) -> Result<StudyReport, ApiError> {
     app.study(&study)?;
-    let permit = app.reporting.acquire().await.map_err(ApiError::internal)?;
+    let _permit = app.reporting.acquire().await.map_err(ApiError::internal)?;
     let task = app.clone();
     // On a thread of its own kind: answering participants must not wait for it.
     let judged = tokio::task::spawn_blocking(move || {
@@ -66,9 +94,7 @@ pub(crate) async fn get_report(
             report_of(&task.store, &loaded.study, &answers).await.map_err(ApiError::from)
         })
     });
-    let report = judged.await.map_err(ApiError::internal)??;
-    drop(permit);
-    Ok(super::fresh(StatusCode::OK, report))
+    judged.await.map_err(ApiError::internal)?
 }
 
 /// The paper's own three tests, computed again, to lay beside a replication's results.
@@ -105,10 +131,14 @@ pub(crate) async fn get_codebook_csv(
 }
 
 fn csv(name: &str, text: String) -> Response {
-    let disposition = format!("attachment; filename=\"{name}\"");
+    download("text/csv; charset=utf-8", name, text)
+}
+
+/// A file to keep, which no browser opens in the console's own origin.
+fn download(media_type: &str, name: &str, text: String) -> Response {
     let headers = [
-        (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
-        (header::CONTENT_DISPOSITION, disposition),
+        (header::CONTENT_TYPE, media_type.to_owned()),
+        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\"")),
         (header::CACHE_CONTROL, "no-store".to_owned()),
     ];
     (headers, text).into_response()

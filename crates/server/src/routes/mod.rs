@@ -47,6 +47,8 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/api/v1/admin/studies", get(admin::get_studies))
         .route("/api/v1/admin/studies/{study}/results", get(admin::get_results))
         .route("/api/v1/admin/studies/{study}/report", get(admin::get_report))
+        .route("/api/v1/admin/studies/{study}/report.html", get(admin::get_report_html))
+        .route("/api/v1/admin/studies/{study}/report.md", get(admin::get_report_md))
         .route("/api/v1/admin/studies/{study}/pairs.csv", get(admin::get_pairs_csv))
         .route("/api/v1/admin/studies/{study}/responses.csv", get(admin::get_responses_csv))
         .route("/api/v1/admin/studies/{study}/codebook.csv", get(admin::get_codebook_csv))

@@ -237,6 +237,27 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
         kelir_server::results::report_of_study(client.folder.path(), "shadow-puppets").await.unwrap();
     assert!(serde_json::to_value(&offline).unwrap() == report, "the command says the same");
 
+    // The same as files: researchers only, to be kept, and whole in themselves.
+    for (ending, media_type, begins) in [
+        ("html", "text/html; charset=utf-8", "<!doctype html>"),
+        ("md", "text/markdown; charset=utf-8", "# Small"),
+    ] {
+        let path = format!("{path}/report.{ending}");
+        assert_eq!(client.get(&path).await.status, StatusCode::UNAUTHORIZED);
+        let file = client.research(&cookie, &path).await;
+        assert_eq!((file.status, file.header("content-type")), (StatusCode::OK, media_type));
+        let name = format!("attachment; filename=\"shadow-puppets-report.{ending}\"");
+        assert_eq!(file.header("content-disposition"), name);
+        let text = file.text();
+        assert!(text.starts_with(begins) && text.contains(report["config_hash"].as_str().unwrap()), "{text}");
+        let t = report["blocks"][0]["t"].as_f64().unwrap();
+        let shown =
+            if ending == "html" { format!("<data value=\"{t}\">") } else { format!("{:.4}", t.abs()) };
+        assert!(text.contains(&shown), "{shown} in {text}");
+    }
+    let nobody = client.research(&cookie, "/api/v1/admin/studies/nobody/report.html").await;
+    assert_eq!(nobody.status, StatusCode::NOT_FOUND);
+
     let pairs = client.research(&cookie, &format!("{path}/pairs.csv")).await.text();
     let rows: Vec<Vec<&str>> = pairs.trim_end().split("\r\n").map(|line| line.split(',').collect()).collect();
     let header =

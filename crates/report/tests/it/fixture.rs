@@ -1,0 +1,215 @@
+//! Studies with known answers.
+
+use kelir_report::{Chain, Excluded, Participants, Stimulus, StudyReport};
+use kelir_study::StudyDefinition;
+use kelir_study::analysis::Answer;
+use kelir_study::report::{Observation, Report};
+use kelir_study::screening::{Seen, screen};
+use serde_json::json;
+
+/// R 4.2.2: `t.test(rep(0:2, c(12, 14, 11)), mu = 1)$statistic`.
+pub const T_OF_12_14_11: f64 = -0.20579830217101017;
+
+/// A study and what each of its participants answered: (pair, condition chosen, response time in ms).
+pub struct Study {
+    pub title: String,
+    pub question: String,
+    pub block_title: String,
+    pub screening: String,
+    pub blocks: String,
+    pub people: Vec<Vec<(&'static str, &'static str, f64)>>,
+}
+
+const BLOCKS: &str = r#"
+[[blocks]]
+id = "stills"
+title = TITLE
+kind = "still"
+conditions = ["pa", "mc"]
+target = "pa"
+pairs = [{ id = "still-a", scene = "a.toml" }, { id = "still-b", scene = "a.toml" }]
+[[blocks]]
+id = "photographs"
+title = "Photographs"
+kind = "still"
+conditions = ["photo", "pa"]
+target = "pa"
+pairs = [{ id = "photo-a", scene = "a.toml" }, { id = "photo-b", scene = "a.toml" }]
+[[blocks]]
+id = "animation"
+title = "Animation"
+kind = "animation"
+conditions = ["pa", "mc"]
+target = "pa"
+pairs = [{ id = "loop-a", scene = "a.toml" }]
+"#;
+
+const LEVELS: [(&str, f64, usize); 6] =
+    [("l0", 2.48, 96), ("l1", 2.7, 95), ("l2", 3.0, 84), ("l3", 3.2, 72), ("l4", 3.5, 58), ("l5", 3.8, 50)];
+
+impl Default for Study {
+    /// The paper's design, without answers.
+    fn default() -> Study {
+        Study {
+            title: "Shadows".to_owned(),
+            question: "Which is real?".to_owned(),
+            block_title: "Stills".to_owned(),
+            screening: String::new(),
+            blocks: BLOCKS.to_owned(),
+            people: Vec::new(),
+        }
+    }
+}
+
+/// The paper's design; per block how many participants chose the target 0, 1 and 2 times. Who chose it once did so in the first pair.
+pub fn paper(counts: [[usize; 3]; 3]) -> Study {
+    let blocks: [&[(&str, &str)]; 3] =
+        [&[("still-a", "mc"), ("still-b", "mc")], &[("photo-a", "photo"), ("photo-b", "photo")], &[("loop-a", "mc")]];
+    let mut people = Vec::new();
+    for (pairs, counts) in blocks.iter().zip(counts) {
+        let chosen = counts.iter().enumerate().flat_map(|(k, n)| std::iter::repeat_n(k, *n));
+        for (person, times) in chosen.enumerate() {
+            if people.len() <= person {
+                people.push(Vec::new());
+            }
+            for (k, (pair, other)) in pairs.iter().enumerate() {
+                people[person].push((*pair, if k < times { "pa" } else { *other }, 500.0 + 10.0 * person as f64));
+            }
+        }
+    }
+    Study { people, ..Study::default() }
+}
+
+/// psignifit's golden numbers: 96, 95, 84, 72, 58, 50 of 100 at log10 triangles 2.48 … 3.8.
+pub fn levels() -> Study {
+    let pairs: Vec<String> = LEVELS
+        .iter()
+        .map(|(id, level, _)| format!("{{ id = \"{id}\", scene = \"a.toml\", level = {level} }}"))
+        .collect();
+    let blocks = format!(
+        "[[blocks]]\nid = \"levels\"\ntitle = TITLE\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\npairs = [{}]\n\
+         [blocks.psychometric]\nfunction = \"gaussian\"\ndirection = \"falling\"\nlabel = \"triangles\"\nunit = \"log10\"\n",
+        pairs.join(", ")
+    );
+    let person = |i: usize| {
+        LEVELS.iter().map(|(id, _, hits)| (*id, if i < *hits { "pa" } else { "mc" }, 800.0)).collect()
+    };
+    Study { blocks, people: (0..100).map(person).collect(), ..Study::default() }
+}
+
+/// A study whose every free text attacks whatever shows it.
+pub fn hostile() -> Study {
+    let evil = "=cmd|' /C calc'!A0 <script>alert('1')</script> | *a* [b](javascript:alert(1)) \"><img src=x onerror=alert(1)> \u{1b}[31m";
+    let mut study = paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]);
+    (study.title, study.question, study.block_title) = (evil.to_owned(), evil.to_owned(), evil.to_owned());
+    study
+}
+
+impl Study {
+    pub fn report(&self) -> StudyReport {
+        let quoted = |text: &str| serde_json::to_string(text).unwrap();
+        let toml = format!(
+            "title = {}\nquestion = {}\nseed = 11\nsize = [64, 36]\nestimated_minutes = 1\n\
+             texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
+             conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}, photo = {{ technique = \"mc\", spp = 4 }} }}\n\
+             screening = {{ {} }}\n{}",
+            quoted(&self.title),
+            quoted(&self.question),
+            self.screening,
+            self.blocks.replace("TITLE", &quoted(&self.block_title))
+        );
+        let design = StudyDefinition::parse("studies/shadows.toml", &toml).unwrap_or_else(|e| panic!("{e}"));
+        judge(design, &self.people)
+    }
+}
+
+fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyReport {
+    let block_of = |pair: &str| design.blocks.iter().find(|b| b.pairs.iter().any(|p| p.id == pair)).unwrap();
+    let ids: Vec<String> = (0..people.len()).map(|i| format!("person-{i:03}")).collect();
+    let (mut everybody, mut judged, mut excluded) = (Vec::new(), Vec::new(), Vec::new());
+    for (session_id, answers) in ids.iter().zip(people) {
+        let own: Vec<Observation<'_>> = answers
+            .iter()
+            .enumerate()
+            .map(|(k, (pair_id, chosen_condition, rt_ms))| Observation {
+                answer: Answer { session_id, block_id: &block_of(pair_id).id, pair_id, chosen_condition },
+                chose_left: k % 2 == 0,
+                rt_ms: *rt_ms,
+            })
+            .collect();
+        let seen: Vec<Seen<'_>> = own
+            .iter()
+            .map(|o| Seen {
+                block_id: o.answer.block_id,
+                chosen_condition: o.answer.chosen_condition,
+                chose_left: o.chose_left,
+                rt_ms: o.rt_ms,
+            })
+            .collect();
+        let reasons = screen(&design, &seen);
+        everybody.extend(own.iter().copied());
+        if reasons.is_empty() {
+            judged.extend(own);
+        } else {
+            excluded.push(Excluded { session_id: session_id.clone(), reasons });
+        }
+    }
+    let report = Report::of(&design, &judged);
+    let with_excluded = (!excluded.is_empty()).then(|| Report::of(&design, &everybody));
+    let stimulus = |pair: &str, condition: &str, rmse: f64| Stimulus {
+        pair: pair.to_owned(),
+        condition: condition.to_owned(),
+        sha256: "5f".repeat(32),
+        provenance: if rmse > 0.0 { json!({ "error": { "penumbra": { "rmse": rmse } } }) } else { json!({}) },
+    };
+    StudyReport {
+        study: design.id.clone(),
+        title: design.title.clone(),
+        question: design.question.clone(),
+        config_hash: design.config_hash(),
+        kelir_version: "0.1.0".to_owned(),
+        answered: (!people.is_empty()).then(|| ["2026-11-22T14:22:22.960Z", "2026-11-22T15:02:01.000Z"].map(str::to_owned)),
+        participants: Participants { started: people.len() as u64, in_progress: 0, completed: people.len() as u64 },
+        screening: design.screening.clone(),
+        report,
+        blocks_with_excluded: with_excluded.as_ref().map(|r| r.blocks.clone()),
+        scale_with_excluded: with_excluded.and_then(|r| r.scale),
+        excluded,
+        stimuli: vec![
+            stimulus("still-a", "pa", 0.01),
+            stimulus("still-a", "mc", 0.0),
+            stimulus("still-b", "pa", 0.02),
+            stimulus("photo-a", "pa", 0.004),
+            stimulus("loop-a", "pa", 0.0),
+        ],
+        other_versions: Vec::new(),
+        chain: Chain { rows: 0, head: "0".repeat(64), broken: None, blanked: 0 },
+        paper: None,
+        design,
+    }
+}
+
+/// Centres of an SVG's disks, in order.
+pub fn svg_disks(svg: &str) -> Vec<(f64, f64)> {
+    let attribute = |tag: &str, name: &str| -> f64 {
+        tag.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
+    };
+    svg.split("<circle").skip(1).map(|rest| {
+        let tag = rest.split('>').next().unwrap();
+        (attribute(tag, "cx"), attribute(tag, "cy"))
+    })
+    .collect()
+}
+
+/// The cells of a line of CSV.
+pub fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted) = (vec![String::new()], false);
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            c => cells.last_mut().unwrap().push(c),
+        }
+    }
+    cells
+}

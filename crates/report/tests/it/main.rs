@@ -1,0 +1,225 @@
+//! Reports as a whole: the numbers in them against R's, what hostile and empty studies make of them.
+#![allow(clippy::unwrap_used)]
+
+mod fixture;
+
+use fixture::{Study, hostile, levels, paper, svg_disks};
+use kelir_report::{Document, Figures, Sample, StudyReport, csv, html, markdown, numbers, text};
+
+/// t, its p, and the p of the binomial test of all choices and of the sign test, by R 4.2.2: `t.test(rep(0:2, c(12, 14, 6)), mu = 1)`,
+/// `binom.test(sum(x), 64)`, `binom.test(sum(x > 1), sum(x != 1))` and so on; then `p.adjust(p, "holm")`.
+const R: [(&str, [f64; 5]); 3] = [
+    ("stills", [-1.4375905768565216, 0.16056863389412473, 0.16864291143970364, 0.23788452148437511, 0.16056863389412473]),
+    ("photographs", [4.2088342464732102, 0.00020378219167228206, 7.7330768812870212e-5, 0.00085544586181640614, 0.00061134657501684623]),
+    ("animation", [-3.9834823795432888, 0.0003668638983360312, 0.0013187271542847213, 0.0013187271542847213, 0.0007337277966720624]),
+];
+
+/// The p of a block's statistic that begins so, and its value, from the tidy rows.
+fn row(report: &StudyReport, block: &str, statistic: &str) -> (f64, Option<f64>) {
+    let rows = numbers(report);
+    let found: Vec<_> = rows
+        .iter()
+        .filter(|n| n.sample == Sample::Screened && n.block == block && n.statistic.starts_with(statistic))
+        .collect();
+    assert_eq!(found.len(), 1, "{block}: {statistic}");
+    (found[0].value.unwrap(), found[0].p)
+}
+
+fn close(ours: f64, theirs: f64) -> bool {
+    (ours - theirs).abs() <= 1e-12 * theirs.abs()
+}
+
+#[test]
+fn the_papers_counts_give_what_r_gives() {
+    let report = paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report();
+    for (block, [t, p, binomial, sign, holm]) in R {
+        let (ours, ours_p) = row(&report, block, "t (df");
+        assert!(close(ours, t) && close(ours_p.unwrap(), p), "{block}: {ours} {ours_p:?}");
+        assert!(close(row(&report, block, "exact binomial").1.unwrap(), binomial), "{block}");
+        assert!(close(row(&report, block, "sign test").1.unwrap(), sign), "{block}");
+        assert!(close(row(&report, block, "t, p corrected").1.unwrap(), holm), "{block}");
+    }
+    // Negative control: one participant who chose otherwise is seen in every one of them.
+    let other = paper([[13, 13, 6], [3, 10, 19], [26, 7, 0]]).report();
+    for (statistic, theirs) in [("t (df", 0.16056863389412473), ("exact binomial", 0.16864291143970364)] {
+        assert!(!close(row(&other, "stills", statistic).1.unwrap(), theirs), "{statistic}");
+    }
+}
+
+#[test]
+fn every_form_says_the_same() {
+    let report = paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report();
+    let document = Document::of(&report);
+    let (page, plain, table) = (html(&document), text(&document), csv(&report));
+    let md = markdown(&document, &Figures::Folder("report-figures".to_owned()));
+    // What is shown of t and p, rounded here by hand from R's digits.
+    for shown in ["−1.4376", "0.1606", "4.2088", "2.04 × 10⁻⁴", "−3.9835", "3.67 × 10⁻⁴", "0.0114", "0.0871"] {
+        for form in [&page, &plain, &md.text] {
+            assert!(form.contains(shown), "{shown} is not in {form}");
+        }
+    }
+    // Every number of the page's block tables is in the CSV, digit for digit, and the other way round.
+    let in_csv: Vec<String> = table.lines().skip(1).flat_map(fixture::cells).collect();
+    let in_page: Vec<&str> =
+        page.split("<data value=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    for number in numbers(&report).iter().filter(|n| !n.block.is_empty() && n.sample == Sample::Screened) {
+        let exact = number.value.unwrap().to_string();
+        assert!(in_page.contains(&exact.as_str()) && in_csv.contains(&exact), "{number:?}");
+    }
+    assert!(!in_page.contains(&"-1.4375905768565217"), "the search tells neighbouring numbers apart");
+    // The terminal's lines fit it, and no paragraph of methods is among them.
+    assert!(plain.lines().all(|line| line.chars().count() <= 100), "{plain}");
+    assert!(!plain.contains("SHA-256") && page.contains("SHA-256") && md.text.contains("SHA-256"));
+    // Figures: within the page; beside the text or within it.
+    assert_eq!((page.matches("<svg").count(), md.files.len()), (document.figures().count(), 4));
+    for (path, svg) in &md.files {
+        assert!(md.text.contains(&format!("(<{path}>)")) && svg.starts_with("<svg"), "{path}");
+    }
+    let whole = markdown(&document, &Figures::Embedded);
+    assert!(whole.files.is_empty() && whole.text.matches("data:image/svg+xml;base64,PHN2Z").count() == 4);
+    // The same answers give the same bytes.
+    assert_eq!(html(&Document::of(&paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report())), page);
+    // Nothing is fetched and nothing runs.
+    for address in ["src=", "href=", "url(", "@import", "<script", "<link"] {
+        assert!(!page.contains(address), "{address}");
+    }
+}
+
+#[test]
+fn the_headline_says_what_was_and_what_was_not_shown() {
+    let page = text(&Document::of(&paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report()));
+    let one_line = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (found, rest) = one_line.split_once("Not shown:").unwrap();
+    let not_shown = rest.split("Participants").next().unwrap();
+    assert!(found.contains("not significantly different from half the time, t(31) = −1.438, p = 0.1606"), "{found}");
+    assert!(found.contains("more often than half the time, t(31) = 4.209") && found.contains("less often than half the time, t(32)"));
+    assert!(not_shown.contains("equivalence within ±0.5 choices is shown (p = 0.0114)"), "{not_shown}");
+    assert!(not_shown.contains("within ±0.5 SD is not (p = 0.0871)") && not_shown.contains("2.1 times likelier under no effect"));
+    assert!(not_shown.contains("below d = 0.51 is missed"), "{not_shown}");
+    assert_eq!(not_shown.matches("cannot tell").count(), 1, "the other two blocks did show a difference");
+
+    // Equivalent within both bounds: found, not among what is not shown.
+    let alike = text(&Document::of(&paper([[20, 60, 20], [3, 10, 19], [26, 7, 0]]).report()));
+    let one_line = alike.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(one_line.contains("and equivalent to it within both bounds asked for"), "{one_line}");
+    assert!(!one_line.contains("cannot tell"));
+}
+
+#[test]
+fn figures_show_the_numbers_of_the_tables() {
+    let report = paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report();
+    let document = Document::of(&report);
+    let figure = |name: &str| document.figures().find(|f| f.name == name).unwrap_or_else(|| panic!("{name}"));
+    // Disks of the choices, from the top down: block, its pairs, block …, on one linear axis.
+    let shares = [
+        row(&report, "stills", "share of pa").0,
+        row(&report, "stills", "still-a: share").0,
+        row(&report, "stills", "still-b: share").0,
+        row(&report, "photographs", "share of pa").0,
+        row(&report, "photographs", "photo-a: share").0,
+        row(&report, "photographs", "photo-b: share").0,
+        row(&report, "animation", "share of pa").0,
+    ];
+    let disks = svg_disks(&figure("choices").svg);
+    assert_eq!(disks.len(), shares.len());
+    let scale = (disks[3].0 - disks[0].0) / (shares[3] - shares[0]);
+    assert!(scale > 100.0, "an axis of {scale} px");
+    for (disk, share) in disks.iter().zip(shares) {
+        assert!((disk.0 - disks[0].0 - scale * (share - shares[0])).abs() < 0.15, "{disk:?} {share}");
+    }
+    // Error against preference: three of the five pairs have a measured stimulus, each named once.
+    let errors = &figure("errors").svg;
+    for pair in ["still-a", "still-b", "photo-a"] {
+        assert_eq!(errors.matches(&format!(">\n{pair}\n<")).count(), 1, "{errors}");
+    }
+    assert!(!errors.contains("loop"), "its stimulus has no error");
+}
+
+#[test]
+fn a_psychometric_function_is_drawn_with_its_data() {
+    let report = levels().report();
+    let document = Document::of(&report);
+    let figure = document.figures().find(|f| f.name == "psychometric-levels").unwrap();
+    // Dots fall from the first level to the last as the shares do: 96, 95, 84, 72, 58, 50 of 100.
+    let disks = svg_disks(&figure.svg);
+    let shares = [0.96, 0.95, 0.84, 0.72, 0.58, 0.50];
+    assert_eq!(disks.len(), 6);
+    let scale = (disks[5].1 - disks[0].1) / (shares[5] - shares[0]);
+    for (disk, share) in disks.iter().zip(shares) {
+        assert!((disk.1 - disks[0].1 - scale * (share - shares[0])).abs() < 0.15, "{disk:?} {share}");
+    }
+    // psignifit 4.3 on these numbers: threshold 3.183, interval 3.082 to 3.331 (x negated there), width 1.001, lapse rate .029.
+    for (statistic, golden) in [("threshold, F", 3.183), ("width", 1.001), ("lapse", 0.029)] {
+        let (ours, _) = row(&report, "levels", statistic);
+        assert!((ours - golden).abs() < 1e-3, "{statistic}: {ours}");
+    }
+    assert!(html(&document).contains("Schütt"), "the paper of the method is cited");
+    let without = html(&Document::of(&paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report()));
+    assert!(!without.contains("Schütt"), "and not where it was not used");
+}
+
+#[test]
+fn nothing_from_a_study_file_is_markup() {
+    let report = hostile().report();
+    let document = Document::of(&report);
+    let page = html(&document);
+    assert!(page.contains("&lt;script&gt;"), "the title is there");
+    // Outside the tags that kelir writes there is no bracket: every tag's name is one of these.
+    let known = [
+        "!doctype", "html", "head", "meta", "title", "style", "body", "main", "header", "h1", "h2", "h3", "p", "section", "ul", "li", "table",
+        "caption", "thead", "tbody", "tr", "th", "td", "data", "span", "figure", "figcaption", "svg", "desc", "g", "rect", "path", "circle", "text",
+    ];
+    for tag in page.split('<').skip(1) {
+        let name: String = tag.trim_start_matches('/').chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '!').collect();
+        assert!(known.contains(&name.as_str()), "<{name} …");
+    }
+    assert!(!page.contains("onerror=\"") && !page.contains("javascript:\""));
+    let md = markdown(&document, &Figures::Embedded).text;
+    assert!(!md.contains("<script") && !md.contains("<img") && md.contains("&lt;script&gt;"), "{md}");
+    assert!(!text(&document).chars().any(|c| c.is_control() && c != '\n'), "no terminal is steered");
+    let table = csv(&report);
+    let begins: Vec<char> = table.lines().flat_map(fixture::cells).filter_map(|c| c.chars().next()).collect();
+    assert!(!begins.contains(&'=') && !begins.contains(&'@'), "{table}");
+}
+
+#[test]
+fn an_empty_study_says_so_and_has_no_figures() {
+    let report = Study::default().report();
+    let document = Document::of(&report);
+    let plain = text(&document);
+    assert!(plain.contains("Nothing yet: nobody has answered.") && plain.contains("Nobody has answered yet."), "{plain}");
+    assert!(!plain.contains("Not shown"));
+    assert_eq!(document.figures().count(), 0);
+    for form in [plain, html(&document), csv(&report), markdown(&document, &Figures::Embedded).text] {
+        assert!(!form.contains("NaN") && !form.contains("inf"), "{form}");
+    }
+    // One answer alone is no error either.
+    let one = Study { people: vec![vec![("still-a", "pa", 900.0)]], ..Study::default() }.report();
+    assert!(text(&Document::of(&one)).contains("no participant has answered every pair yet"));
+}
+
+#[test]
+fn the_excluded_are_named_and_the_results_given_both_ways() {
+    // Five who never look, always choosing the photograph's rival in 50 ms, beside the paper's 33.
+    let mut study = paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]);
+    study.screening = "min_rt_ms = 200".to_owned();
+    for _ in 0..5 {
+        study.people.push(vec![("still-a", "pa", 50.0), ("still-b", "pa", 50.0), ("photo-a", "pa", 50.0), ("photo-b", "pa", 50.0), ("loop-a", "pa", 50.0)]);
+    }
+    let report = study.report();
+    assert_eq!(report.excluded.len(), 5);
+    let (t, _) = row(&report, "stills", "t (df");
+    assert!(close(t, R[0].1[0]), "the judged are the paper's participants: {t}");
+    let plain = text(&Document::of(&report));
+    assert!(plain.contains("5 answers too fast, 0 allowed") && plain.contains("With and without the excluded"), "{plain}");
+    // R 4.2.2: t.test(rep(0:2, c(12, 14, 11)), mu = 1): t = -0.2058 on 36 degrees of freedom.
+    let everybody = numbers(&report);
+    let everybody: Vec<f64> = everybody
+        .iter()
+        .filter(|n| n.sample == Sample::Everybody && n.block == "stills" && n.statistic.starts_with("t (df"))
+        .filter_map(|n| n.value)
+        .collect();
+    assert!(everybody.len() == 1 && close(everybody[0], fixture::T_OF_12_14_11), "{everybody:?}");
+    let csv = csv(&report);
+    assert!(csv.lines().any(|line| line.starts_with("everybody,stills,t-test,")), "{csv}");
+}
