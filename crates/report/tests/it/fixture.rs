@@ -63,8 +63,11 @@ impl Default for Study {
 
 /// The paper's design; per block how many participants chose the target 0, 1 and 2 times. Who chose it once did so in the first pair.
 pub fn paper(counts: [[usize; 3]; 3]) -> Study {
-    let blocks: [&[(&str, &str)]; 3] =
-        [&[("still-a", "mc"), ("still-b", "mc")], &[("photo-a", "photo"), ("photo-b", "photo")], &[("loop-a", "mc")]];
+    let blocks: [&[(&str, &str)]; 3] = [
+        &[("still-a", "mc"), ("still-b", "mc")],
+        &[("photo-a", "photo"), ("photo-b", "photo")],
+        &[("loop-a", "mc")],
+    ];
     let mut people = Vec::new();
     for (pairs, counts) in blocks.iter().zip(counts) {
         let chosen = counts.iter().enumerate().flat_map(|(k, n)| std::iter::repeat_n(k, *n));
@@ -73,7 +76,11 @@ pub fn paper(counts: [[usize; 3]; 3]) -> Study {
                 people.push(Vec::new());
             }
             for (k, (pair, other)) in pairs.iter().enumerate() {
-                people[person].push((*pair, if k < times { "pa" } else { *other }, 500.0 + 10.0 * person as f64));
+                people[person].push((
+                    *pair,
+                    if k < times { "pa" } else { *other },
+                    500.0 + 10.0 * person as f64,
+                ));
             }
         }
     }
@@ -108,10 +115,12 @@ pub fn hostile() -> Study {
 impl Study {
     pub fn report(&self) -> StudyReport {
         let quoted = |text: &str| serde_json::to_string(text).unwrap();
+        let photo =
+            if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
         let toml = format!(
             "title = {}\nquestion = {}\nseed = 11\nsize = [64, 36]\nestimated_minutes = 1\n\
              texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
-             conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}, photo = {{ technique = \"mc\", spp = 4 }} }}\n\
+             conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}\n\
              screening = {{ {} }}\n{}",
             quoted(&self.title),
             quoted(&self.question),
@@ -168,8 +177,13 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
         question: design.question.clone(),
         config_hash: design.config_hash(),
         kelir_version: "0.1.0".to_owned(),
-        answered: (!people.is_empty()).then(|| ["2026-11-22T14:22:22.960Z", "2026-11-22T15:02:01.000Z"].map(str::to_owned)),
-        participants: Participants { started: people.len() as u64, in_progress: 0, completed: people.len() as u64 },
+        answered: (!people.is_empty())
+            .then(|| ["2026-11-22T14:22:22.960Z", "2026-11-22T15:02:01.000Z"].map(str::to_owned)),
+        participants: Participants {
+            started: people.len() as u64,
+            in_progress: 0,
+            completed: people.len() as u64,
+        },
         screening: design.screening.clone(),
         report,
         blocks_with_excluded: with_excluded.as_ref().map(|r| r.blocks.clone()),
@@ -194,11 +208,13 @@ pub fn svg_disks(svg: &str) -> Vec<(f64, f64)> {
     let attribute = |tag: &str, name: &str| -> f64 {
         tag.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
     };
-    svg.split("<circle").skip(1).map(|rest| {
-        let tag = rest.split('>').next().unwrap();
-        (attribute(tag, "cx"), attribute(tag, "cy"))
-    })
-    .collect()
+    svg.split("<circle")
+        .skip(1)
+        .map(|rest| {
+            let tag = rest.split('>').next().unwrap();
+            (attribute(tag, "cx"), attribute(tag, "cy"))
+        })
+        .collect()
 }
 
 /// The cells of a line of CSV.
