@@ -4,4 +4,5 @@
 mod cli;
 mod film;
 mod invariants;
+mod report;
 mod survey;

@@ -36,7 +36,7 @@ enum Task {
     Test,
     /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
     Bench,
-    /// Make the README's pictures anew; the trial's comes from the screenshots of the last `test`.
+    /// Make the README's pictures anew; the trial's and the report's come from the screenshots of the last `test`.
     Pictures,
 }
 
@@ -121,9 +121,13 @@ fn pictures() -> Result<()> {
     ]);
     scene.arg(folder.join("scene.png"));
     step("scene.png", scene)?;
-    let trial = run::root().join("tests/screenshots/participant-trial-2-1280x800.png");
-    std::fs::copy(&trial, folder.join("trial.png"))
-        .with_context(|| format!("{}: run `cargo xtask test` first", trial.display()))?;
+    for (shot, picture) in
+        [("participant-trial-2-1280x800.png", "trial.png"), ("report-top.png", "report.png")]
+    {
+        let shot = run::root().join("tests/screenshots").join(shot);
+        std::fs::copy(&shot, folder.join(picture))
+            .with_context(|| format!("{}: run `cargo xtask test` first", shot.display()))?;
+    }
     Ok(())
 }
 
