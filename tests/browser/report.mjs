@@ -27,8 +27,10 @@ try {
     pages.push({ width, overflow: await overflow(), letters: await letters() });
     await page.screenshot({ path: join(task.shots, `report-${width}x${height}.png`), fullPage: true });
   }
-  await page.setViewportSize({ width: 900, height: 1160 });
-  await page.screenshot({ path: join(task.shots, "report-top.png") });
+  // The top down to the end of the first figure.
+  await page.setViewportSize({ width: 900, height: 800 });
+  const height = await page.evaluate(() => Math.ceil(document.querySelector("figure").getBoundingClientRect().bottom) + 24);
+  await page.screenshot({ path: join(task.shots, "report-top.png"), fullPage: true, clip: { x: 0, y: 0, width: 900, height } });
   const ground = () => page.evaluate(() => [getComputedStyle(document.documentElement).backgroundColor, getComputedStyle(document.querySelector("figure svg > rect")).fill]);
   const light = await ground();
   await page.emulateMedia({ colorScheme: "dark" });

@@ -4,7 +4,7 @@ use svg::Document;
 use svg::node::element::{Circle, Description, Group, Path, Rectangle, Text, Title};
 
 use crate::axis::Fitted;
-use crate::labels::spread;
+use crate::labels::{beside, spread};
 use crate::{Axis, Figure, PlotError, Point, Rule, Scale, Series};
 
 /// Okabe and Ito's palette without its yellow, which a white page swallows.
@@ -187,10 +187,32 @@ impl Layout {
                 names.push((self.place(last).1, &series.name, colour));
             }
         }
+        group = self.labels(figure, group);
         let wanted: Vec<f64> = names.iter().map(|(at, ..)| *at).collect();
         let heights = spread(&wanted, FONT_PX + 3.0, [self.top, self.bottom]);
         names.iter().zip(heights).fold(group, |group, ((_, name, colour), at)| {
             group.add(text(name, (self.right + 8.0, at), "start", colour))
+        })
+    }
+
+    /// The points' own labels, none over another.
+    fn labels(&self, figure: &Figure, group: Group) -> Group {
+        let all =
+            figure.series.iter().enumerate().flat_map(|(k, s)| s.points.iter().map(move |point| (k, point)));
+        let all: Vec<(usize, &Point)> =
+            all.filter(|(k, p)| p.label.is_some() || figure.series[*k].markers).collect();
+        let width = |point: &Point| point.label.as_deref().map_or(0.0, text_width);
+        let places: Vec<(f64, f64, f64)> = all
+            .iter()
+            .map(|(_, point)| {
+                let (x, y) = self.place(point);
+                (x, y, width(point))
+            })
+            .collect();
+        let found = beside(&places, FONT_PX + 3.0, [self.left, self.right + 4.0]);
+        all.iter().zip(found).fold(group, |group, ((k, point), at)| match &point.label {
+            Some(label) => group.add(text(label, at, "start", PALETTE[k % PALETTE.len()])),
+            None => group,
         })
     }
 
@@ -216,9 +238,6 @@ impl Layout {
                     ),
                     kind => group.add(marker(kind, (*x, *y), colour)),
                 };
-            }
-            if let Some(label) = &point.label {
-                group = group.add(text(label, (x + 8.0, y - 8.0), "start", colour));
             }
         }
         group

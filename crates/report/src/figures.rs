@@ -1,8 +1,8 @@
 //! Plots that say it faster than tables.
 
-use crate::StudyReport;
 use crate::document::{Figure, Piece};
 use crate::format::{fixed, percent, range, share};
+use crate::{PhysicalError, StudyReport};
 use kelir_plot::{Axis, Estimate, Forest, Point, Rule, Series, forest, svg};
 use kelir_stats::inference::Interval;
 use kelir_study::report::{BlockReport, Proportion};
@@ -47,7 +47,7 @@ pub(crate) fn choices(blocks: &[BlockReport]) -> Option<Piece> {
         return None;
     }
     let figure = Forest {
-        title: "Who preferred what".to_owned(),
+        title: "Share of choices, 95% intervals".to_owned(),
         axis: Axis::linear("share of choices").within(0.0, 1.0),
         rule: Some((0.5, "chance".to_owned())),
         rows,
@@ -76,7 +76,7 @@ pub(crate) fn scale(report: &StudyReport) -> Option<Piece> {
         strong: false,
     });
     let figure = Forest {
-        title: "All conditions on one scale".to_owned(),
+        title: "Positions of the conditions, 95% intervals".to_owned(),
         axis: Axis::linear("JOD; more is chosen more often"),
         rule: Some((0.0, "mean".to_owned())),
         rows: rows.collect(),
@@ -155,7 +155,7 @@ pub(crate) fn times(blocks: &[BlockReport]) -> Option<Piece> {
     }
     let most = series.iter().flat_map(|s| s.points.last()).map(|p| p.x).fold(0.001, f64::max);
     let figure = kelir_plot::Figure {
-        title: "How long answers took".to_owned(),
+        title: "Share of answers given within a time".to_owned(),
         x: Axis::linear("response time, s").within(0.0, 1.04 * most),
         y: Axis::linear("share of answers so far").within(0.0, 1.0),
         series,
@@ -171,8 +171,7 @@ pub(crate) fn times(blocks: &[BlockReport]) -> Option<Piece> {
 pub(crate) struct Judged<'a> {
     pub pair: &'a str,
     pub condition: &'a str,
-    /// RMSE in penumbra, share of full scale.
-    pub rmse: f64,
+    pub error: PhysicalError,
     /// Share of choices that preferred it to the other of its pair.
     pub share: f64,
     pub interval: Interval,
@@ -189,14 +188,14 @@ pub(crate) fn judged(report: &StudyReport) -> Vec<Judged<'_>> {
                 .iter()
                 .filter(|s| s.pair == pair.id && block.summary.conditions.contains(&s.condition))
             {
-                let Some(rmse) = stimulus.penumbra_rmse() else { continue };
+                let Some(error) = stimulus.error() else { continue };
                 let Interval { low, high, level } = target.wilson;
                 let (share, interval) = if stimulus.condition == block.summary.target {
                     (target.proportion, target.wilson)
                 } else {
                     (1.0 - target.proportion, Interval { low: 1.0 - high, high: 1.0 - low, level })
                 };
-                found.push(Judged { pair: &pair.id, condition: &stimulus.condition, rmse, share, interval });
+                found.push(Judged { pair: &pair.id, condition: &stimulus.condition, error, share, interval });
             }
         }
     }
@@ -209,34 +208,31 @@ pub(crate) fn errors(report: &StudyReport) -> Option<Piece> {
     if all.is_empty() {
         return None;
     }
-    let mut conditions: Vec<&str> = all.iter().map(|j| j.condition).collect();
-    conditions.sort_unstable();
-    conditions.dedup();
-    let series = conditions.iter().map(|condition| {
-        let points = all.iter().filter(|j| j.condition == *condition).map(|j| Point {
-            x: j.rmse,
+    let mut kinds: Vec<(&str, bool)> = all.iter().map(|j| (j.condition, j.error.own)).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let series = kinds.iter().map(|(condition, own)| {
+        let points = all.iter().filter(|j| (j.condition, j.error.own) == (*condition, *own)).map(|j| Point {
+            x: j.error.rms,
             y: j.share,
             interval: Some([j.interval.low, j.interval.high]),
-            label: Some(j.pair.to_owned()),
+            // The pair is named once, at the stimulus that was measured.
+            label: (!own).then(|| j.pair.to_owned()),
         });
-        Series {
-            name: (*condition).to_owned(),
-            points: points.collect(),
-            line: false,
-            markers: true,
-            dashed: false,
-        }
+        let name = if *own { format!("{condition} (own noise)") } else { (*condition).to_owned() };
+        Series { name, points: points.collect(), line: false, markers: true, dashed: false }
     });
     let figure = kelir_plot::Figure {
-        title: "Physical error and preference".to_owned(),
-        x: Axis::log10("RMSE in penumbra, share of full scale (log axis)"),
+        title: "Preference against physical error".to_owned(),
+        x: Axis::log10("RMS error, share of full scale (log axis)"),
         y: Axis::linear("share that preferred it").within(0.0, 1.0),
         series: series.collect(),
         rules: vec![Rule::Horizontal(0.5, "chance".to_owned())],
         size: [WIDTH, HEIGHT],
     };
-    let caption = "Each stimulus: its measured error against its reference (of simulated photographs before the camera), and the share of participants who preferred it to the other \
-         of its pair, with Wilson's 95% interval. Labels name pairs, colours and marks conditions.";
+    let caption = "Each stimulus: its error in penumbra against its reference, or its own standard error (own noise) where it is the reference; of simulated \
+         photographs before the camera. Upwards the share of participants who preferred it to the other of its pair, with Wilson's 95% interval. \
+         Labels name pairs, colours and marks conditions.";
     Some(drawn("errors", caption.to_owned(), svg(&figure)))
 }
 

@@ -25,10 +25,10 @@ fn section(section: &Section) -> String {
 fn piece(piece: &Piece) -> String {
     match piece {
         Piece::Heading(heading) => format!("<h3>{}</h3>\n", escaped(heading)),
-        Piece::Text(paragraph) => format!("<p>{}</p>\n", escaped(paragraph)),
+        Piece::Text(paragraph) => format!("<p>{}</p>\n", prose(paragraph)),
         Piece::Warning(warning) => format!("<p class=\"warning\" role=\"note\">{}</p>\n", escaped(warning)),
         Piece::List(items) => {
-            let items: String = items.iter().map(|item| format!("<li>{}</li>\n", escaped(item))).collect();
+            let items: String = items.iter().map(|item| format!("<li>{}</li>\n", prose(item))).collect();
             format!("<ul>\n{items}</ul>\n")
         }
         Piece::Table(table) => table_of(table),
@@ -103,6 +103,11 @@ fn content(cell: &Cell) -> String {
         Some(note) => format!("{shown}<span class=\"note\">{}</span>", escaped(note)),
         None => shown,
     }
+}
+
+/// A sentence, in which no line breaks within "p = 0.04" or "3 × 10⁻⁴".
+fn prose(text: &str) -> String {
+    escaped(text).replace(" = ", "\u{a0}=\u{a0}").replace(" × 10", "\u{a0}×\u{a0}10")
 }
 
 /// Text that HTML shows as it is, in elements and in quoted attributes.

@@ -112,11 +112,33 @@ pub struct Stimulus {
     pub provenance: Value,
 }
 
+/// How wrong a stimulus is, in units of the brightest unshadowed point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhysicalError {
+    /// Root mean square: in penumbra against the reference, or the stimulus's own standard error.
+    pub rms: f64,
+    /// What the reference's own noise adds to any error measured against it; `None` where it is not known or where `rms` is
+    /// the stimulus's own.
+    pub floor: Option<f64>,
+    /// Whether `rms` is the stimulus's own standard error (Monte Carlo, over the sampled pixels), for want of a better reference.
+    pub own: bool,
+}
+
+impl PhysicalError {
+    /// Whether most of the error may be the reference's: rms² < 2 floor².
+    pub fn is_mostly_noise(&self) -> bool {
+        self.floor.is_some_and(|floor| self.rms < std::f64::consts::SQRT_2 * floor)
+    }
+}
+
 impl Stimulus {
-    /// Its root-mean-square error in penumbra against its reference, in units of the brightest unshadowed point; `None` where
-    /// nothing was measured, or where it is its own reference.
-    pub fn penumbra_rmse(&self) -> Option<f64> {
-        self.provenance.pointer("/error/penumbra/rmse").and_then(Value::as_f64).filter(|rmse| *rmse > 0.0)
+    /// Its error as measured when it was made; `None` where nothing was.
+    pub fn error(&self) -> Option<PhysicalError> {
+        let number = |path| self.provenance.pointer(path).and_then(Value::as_f64).filter(|x: &f64| *x > 0.0);
+        if let Some(rms) = number("/error/penumbra/rmse") {
+            return Some(PhysicalError { rms, floor: number("/error/floor"), own: false });
+        }
+        Some(PhysicalError { rms: number("/standard_error/rms_sampled")?, floor: None, own: true })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Every number of a report, one at a time: what the tables show and the CSV holds.
 
 use crate::StudyReport;
+use crate::format::count;
 use kelir_stats::clustered::{Bootstrap, Coefficient};
 use kelir_stats::inference::{Bounds, Interval};
 use kelir_stats::pairwise::ScaleIntervals;
@@ -80,12 +81,14 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
         });
     }
     for stimulus in &report.stimuli {
-        if let Some(rmse) = stimulus.penumbra_rmse() {
-            let name = format!(
-                "RMSE in penumbra of {}, {} (share of full scale)",
-                stimulus.pair, stimulus.condition
+        let rows = Rows::of(Sample::Screened, "", "stimulus error");
+        let of = format!("of {}, {} (share of full scale)", stimulus.pair, stimulus.condition);
+        if let Some(error) = stimulus.error() {
+            let what = if error.own { "own standard error" } else { "RMSE in penumbra" };
+            all.push(rows.number(format!("{what} {of}"), error.rms, 6));
+            all.extend(
+                error.floor.map(|floor| rows.number(format!("the reference's noise in that {of}"), floor, 6)),
             );
-            all.push(Rows::of(Sample::Screened, "", "stimulus error").number(name, rmse, 6));
         }
     }
     all
@@ -181,9 +184,9 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     }
 
     let t = rows("t-test");
-    let mean = summary
-        .mean
-        .map(|x| t.number(format!("mean choices of {target} (of {} pairs)", summary.pairs), x, 4));
+    let mean = summary.mean.map(|x| {
+        t.number(format!("mean choices of {target} (of {})", count(summary.pairs as u64, "pair")), x, 4)
+    });
     all.extend(mean.map(|row| Number { n: Some(summary.n), ..row }));
     all.extend(summary.sd.map(|x| t.number("standard deviation (choices)", x, 4)));
     all.push(t.number("expected of who cannot tell (choices)", summary.mu, 1));

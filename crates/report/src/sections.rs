@@ -8,6 +8,9 @@ use crate::{StudyReport, figures, headline};
 use kelir_study::screening::Exclusion;
 use kelir_study::{Condition, Kind};
 
+/// Excluded participants that are named one by one.
+const MOST_LISTED: usize = 100;
+
 /// Everything there is to say.
 pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
     let mut sections = vec![headline::section(report)];
@@ -62,7 +65,7 @@ fn participants(report: &StudyReport) -> Section {
         };
         pieces.push(Piece::Text(format!("Nobody is excluded. {why}")));
     } else {
-        let rows = report.excluded.iter().map(|excluded| {
+        let rows = report.excluded.iter().take(MOST_LISTED).map(|excluded| {
             let reasons: Vec<String> = excluded.reasons.iter().map(reason).collect();
             Row::Cells(vec![Cell::text(&excluded.session_id), Cell::text(reasons.join("; "))])
         });
@@ -71,6 +74,13 @@ fn participants(report: &StudyReport) -> Section {
             count(report.excluded.len() as u64, "participant")
         );
         pieces.push(Piece::Table(Table::new(caption, &["session", "reason"], rows.collect())));
+        if report.excluded.len() > MOST_LISTED {
+            pieces.push(Piece::Text(format!(
+                "And {} more: kelir stats {} --format json names them all.",
+                report.excluded.len() - MOST_LISTED,
+                report.study
+            )));
+        }
     }
     Section::new("Participants", pieces)
 }
@@ -213,19 +223,34 @@ fn times(report: &StudyReport) -> Option<Section> {
 
 fn errors(report: &StudyReport) -> Option<Section> {
     let figure = figures::errors(report)?;
-    let rows = figures::judged(report).into_iter().map(|j| {
+    let judged = figures::judged(report);
+    let mut pieces = vec![figure];
+    let noisy = judged.iter().filter(|j| j.error.is_mostly_noise()).count();
+    if noisy > 0 {
+        pieces.push(Piece::Warning(format!(
+            "The measured error of {} is mostly the noise of the reference it was measured against: the true error is smaller, and how such stimuli \
+             compare in it means nothing. A reference with more samples would tell.",
+            if noisy == 1 { "1 stimulus".to_owned() } else { format!("{noisy} stimuli") }
+        )));
+    }
+    let rows = judged.iter().map(|j| {
+        let condition = Cell::text(j.condition);
         Row::Cells(vec![
             Cell::text(j.pair),
-            Cell::text(j.condition),
-            Cell::number(significant(j.rmse, 3), j.rmse),
+            if j.error.own { condition.noted("error: its own standard error") } else { condition },
+            Cell::number(significant(j.error.rms, 3), j.error.rms),
+            j.error.floor.map_or_else(Cell::default, |floor| Cell::number(significant(floor, 3), floor)),
             Cell { shown: share(j.share, j.interval), exact: Some(j.share.to_string()), note: None },
         ])
     });
-    let columns = ["pair", "condition", "RMSE in penumbra#", "preferred it, 95% interval#"];
-    Some(Section::new(
-        "Physical error and preference",
-        vec![figure, Piece::Table(Table::new("", &columns, rows.collect()))],
-    ))
+    let columns =
+        ["pair", "condition", "RMS error#", "reference's noise in it#", "preferred it, 95% interval#"];
+    pieces.push(Piece::Table(Table::new(
+        "Errors in units of the brightest unshadowed point.",
+        &columns,
+        rows.collect(),
+    )));
+    Some(Section::new("Physical error and preference", pieces))
 }
 
 /// The paper's test with and without the excluded.
@@ -345,11 +370,11 @@ fn data(report: &StudyReport) -> Section {
             Row::Cells(vec![
                 Cell::text(&stimulus.pair),
                 Cell::text(&stimulus.condition),
-                Cell::maybe(stimulus.penumbra_rmse(), |e| significant(e, 3)),
+                Cell::maybe(stimulus.error().map(|e| e.rms), |e| significant(e, 3)),
                 Cell::text(&stimulus.sha256),
             ])
         });
-        let columns = ["pair", "condition", "RMSE in penumbra#", "SHA-256"];
+        let columns = ["pair", "condition", "RMS error#", "SHA-256"];
         pieces.push(Piece::Table(Table::new(
             "Stimuli, by the hash of their bytes.",
             &columns,

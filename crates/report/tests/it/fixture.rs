@@ -169,7 +169,11 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
         pair: pair.to_owned(),
         condition: condition.to_owned(),
         sha256: "5f".repeat(32),
-        provenance: if rmse > 0.0 { json!({ "error": { "penumbra": { "rmse": rmse } } }) } else { json!({}) },
+        provenance: if rmse > 0.0 {
+            json!({ "error": { "penumbra": { "rmse": rmse }, "floor": 0.003 } })
+        } else {
+            json!({})
+        },
     };
     StudyReport {
         study: design.id.clone(),

@@ -275,6 +275,27 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn a_hostile_study_file_writes_no_markup_into_its_report() {
+    let folder = crate::client::folder();
+    let study =
+        crate::client::STUDY.replace("Small", "<script>alert(1)</script>").replace("Which?", "<img src=x>");
+    std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
+    let drawer = std::sync::Arc::<crate::placeholder::Placeholder>::default();
+    let server = Server::open(&config(folder.path(), drawer.clone())).await.unwrap();
+    let client = Client { server, folder, drawer };
+    let cookie = client.sign_in().await;
+    for ending in ["html", "md"] {
+        let path = format!("/api/v1/admin/studies/shadow-puppets/report.{ending}");
+        let text = client.research(&cookie, &path).await.text();
+        assert!(!text.contains("<script") && !text.contains("<img"), "{text}");
+        assert!(
+            text.contains("&lt;script&gt;alert(1)&lt;/script&gt;") && text.contains("Nothing yet"),
+            "{text}"
+        );
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn the_papers_own_tests_can_be_laid_beside_the_results() {
     let client = Client::unready().await;
     let cookie = client.sign_in().await;
