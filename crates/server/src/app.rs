@@ -4,11 +4,12 @@ use crate::error::ApiError;
 use crate::library::Library;
 use crate::limiter::Limiter;
 use crate::making::{Maker, Making, StimulusMap};
-use kelir_store::{Answers, Store, StoreError};
+use kelir_store::{Store, StoreError, StoredAnswers};
+use kelir_study::answers::Answers;
 use kelir_study::StudyDefinition;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, PoisonError, RwLock};
-use tokio::sync::{MutexGuard, Semaphore};
+use tokio::sync::Semaphore;
 
 pub(crate) struct App {
     pub(crate) store: Store,
@@ -31,7 +32,7 @@ pub(crate) struct LoadedStudy {
     pub(crate) config_hash: String,
     pub(crate) stimuli: RwLock<Stimuli>,
     /// The answers as last read: what has come since is all that a result has to read.
-    answers: tokio::sync::Mutex<Answers>,
+    answers: tokio::sync::Mutex<StoredAnswers>,
 }
 
 /// How far a study's stimuli are.
@@ -52,9 +53,9 @@ impl App {
     ) -> App {
         let loaded = |study: StudyDefinition| LoadedStudy {
             config_hash: study.config_hash(),
-            study: Arc::new(study),
             stimuli: RwLock::new(Stimuli::Preparing(None)),
-            answers: tokio::sync::Mutex::default(),
+            answers: tokio::sync::Mutex::new(StoredAnswers::new(&study)),
+            study: Arc::new(study),
         };
         App {
             store,
@@ -100,10 +101,10 @@ impl App {
 
 impl LoadedStudy {
     /// Every answer there is now.
-    pub(crate) async fn answers(&self, store: &Store) -> Result<MutexGuard<'_, Answers>, StoreError> {
-        let mut answers = self.answers.lock().await;
-        store.read_on(&mut answers, &self.study.id, &self.config_hash).await?;
-        Ok(answers)
+    pub(crate) async fn answers(&self, store: &Store) -> Result<Arc<Answers>, StoreError> {
+        let mut stored = self.answers.lock().await;
+        store.read_on(&mut stored).await?;
+        Ok(stored.answers())
     }
 
     pub(crate) fn stimuli(&self) -> Stimuli {

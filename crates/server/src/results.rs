@@ -2,15 +2,18 @@
 
 use crate::export::write_row;
 use kelir_report::{Chain, StudyReport};
+use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
-use kelir_store::{AnswerRow, Answers, Participants, Store, StoreError, StudyStimulus};
-use kelir_study::analysis::{Answer, BlockSummary, summarise};
-use kelir_study::report::{Observation, Report};
-use kelir_study::screening::{Seen, screen};
-use kelir_study::{Screening, StudyDefinition};
+use kelir_store::{Participants, Store, StoreError, StoredAnswers, StudyStimulus};
+use kelir_study::StudyDefinition;
+use kelir_study::analysis::{BlockSummary, conditions_scale, summarise};
+use kelir_study::answers::{Answers, Participant, blocks};
+use kelir_study::report::Report;
+use kelir_study::screening::screen;
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 pub use kelir_report::{Excluded, OtherVersion};
@@ -35,6 +38,10 @@ pub struct StudyResults {
     pub blocks: Vec<BlockSummary>,
     /// The same with everybody; null when nobody is excluded.
     pub blocks_with_excluded: Option<Vec<BlockSummary>>,
+    /// All conditions on one axis, without the excluded; its standard errors take choices as independent, see the report.
+    pub scale: Option<Scale>,
+    /// Why there is no scale.
+    pub scale_note: Option<String>,
     /// What was shown, with how it was made and its measured error.
     pub stimuli: Vec<StudyStimulus>,
     /// Other versions of the study that have sessions; their answers are not in these results.
@@ -49,10 +56,10 @@ pub async fn results(store: &Store, study: &StudyDefinition) -> Result<StudyResu
     results_of(store, study, &read(store, study).await?).await
 }
 
-async fn read(store: &Store, study: &StudyDefinition) -> Result<Answers, StoreError> {
-    let mut answers = Answers::default();
-    store.read_on(&mut answers, &study.id, &study.config_hash()).await?;
-    Ok(answers)
+async fn read(store: &Store, study: &StudyDefinition) -> Result<Arc<Answers>, StoreError> {
+    let mut stored = StoredAnswers::new(study);
+    store.read_on(&mut stored).await?;
+    Ok(stored.answers())
 }
 
 /// The same from answers that have been read.
@@ -63,17 +70,20 @@ pub(crate) async fn results_of(
 ) -> Result<StudyResults, StoreError> {
     let config_hash = study.config_hash();
     let idle = Duration::from_secs(60 * u64::from(study.idle_minutes));
-    let answers = answers.rows();
-    let excluded = exclusions(study, answers);
-    let left_out: HashSet<&str> = excluded.iter().map(|e| e.session_id.as_str()).collect();
-    let blocks = summarise(study, answers.iter().map(answer).filter(|a| !left_out.contains(a.session_id)));
-    let everybody = (!excluded.is_empty()).then(|| summarise(study, answers.iter().map(answer)));
+    let (everybody, judged, excluded) = screened(study, answers);
+    let blocks = summarise(study, &judged);
+    let (scale, scale_note) = match conditions_scale(study, &judged) {
+        Ok(scale) => (Some(scale), None),
+        Err(note) => (None, Some(note)),
+    };
     Ok(StudyResults {
         study: study.id.clone(),
         title: study.title.clone(),
         participants: store.participants(&study.id, &config_hash, idle).await?,
         blocks,
-        blocks_with_excluded: everybody,
+        blocks_with_excluded: (!excluded.is_empty()).then(|| summarise(study, &everybody)),
+        scale,
+        scale_note,
         excluded,
         stimuli: store.study_stimuli(&study.id, &config_hash).await?,
         other_versions: other_versions(store, &study.id, &config_hash).await?,
@@ -97,12 +107,7 @@ pub(crate) async fn report_of(
 ) -> Result<StudyReport, StoreError> {
     let config_hash = study.config_hash();
     let idle = Duration::from_secs(60 * u64::from(study.idle_minutes));
-    let answers = answers.rows();
-    let excluded = exclusions(study, answers);
-    let left_out = names(&excluded);
-    let everybody: Vec<Observation<'_>> = answers.iter().map(observation).collect();
-    let judged: Vec<Observation<'_>> =
-        everybody.iter().filter(|o| !left_out.contains(o.answer.session_id)).copied().collect();
+    let (everybody, judged, excluded) = screened(study, answers);
     let report = Report::of(study, &judged);
     let (with_excluded, scale_with_excluded) = if excluded.is_empty() {
         (None, None)
@@ -146,37 +151,36 @@ pub(crate) async fn report_of(
 }
 
 /// Choices as pwcmp reads them, one row a trial: `observer, session, scene, condition_A, condition_B, is_A_selected`, and
-/// `left_condition`, since A and B are the block's conditions in file order and never mean sides. Without the excluded
-/// and without catch blocks.
+/// `left_condition`, since A and B are the block's conditions in file order and never mean sides. By participants in the order
+/// they began and pairs in file order, without the excluded and without catch blocks.
 ///
 /// # Errors
 /// The store cannot be read.
 pub async fn pairs_csv(store: &Store, study: &StudyDefinition) -> Result<String, StoreError> {
-    let config_hash = study.config_hash();
     let answers = read(store, study).await?;
-    let answers = answers.rows();
-    let excluded = exclusions(study, answers);
-    let left_out = names(&excluded);
-    let sessions = store.sessions(&study.id, &config_hash).await?;
+    let (_, judged, _) = screened(study, &answers);
+    let sessions = store.sessions(&study.id, &study.config_hash()).await?;
     let observers: HashMap<&str, &str> =
         sessions.iter().map(|s| (s.session_id.as_str(), s.subject_id.as_str())).collect();
     let mut out = String::new();
     let header =
         ["observer", "session", "scene", "condition_A", "condition_B", "is_A_selected", "left_condition"];
     write_row(&mut out, header.map(str::to_owned));
-    for row in answers.iter().filter(|row| !left_out.contains(&*row.session_id)) {
-        let Some(block) = study.block(&row.block_id).filter(|block| !block.catch) else { continue };
-        let [a, b] = &block.conditions;
-        let observer = observers.get(&*row.session_id).copied().unwrap_or_default();
-        let selected = u8::from(row.chosen_condition() == a).to_string();
-        let cells = [observer, &row.session_id, &row.pair_id, a, b, &selected, &row.left_condition];
-        write_row(&mut out, cells.map(str::to_owned));
+    for participant in judged {
+        let session = &*participant.session_id;
+        let observer = observers.get(session).copied().unwrap_or_default();
+        for (block, pairs) in blocks(study).filter(|(block, _)| !block.catch) {
+            let [a, b] = &block.conditions;
+            for given in participant.answers_to(&pairs) {
+                let pair = &block.pairs[(given.pair - pairs.start) as usize];
+                let chose = |target: bool| if target { block.target.as_str() } else { block.other() };
+                let selected = if chose(given.chose_target) == a { "1" } else { "0" };
+                let left = chose(given.chose_target == given.chose_left);
+                write_row(&mut out, [observer, session, &pair.id, a, b, selected, left].map(str::to_owned));
+            }
+        }
     }
     Ok(out)
-}
-
-fn names(excluded: &[Excluded]) -> HashSet<&str> {
-    excluded.iter().map(|e| e.session_id.as_str()).collect()
 }
 
 async fn other_versions(
@@ -189,37 +193,23 @@ async fn other_versions(
     Ok(other.map(|(config_hash, sessions)| OtherVersion { config_hash, sessions }).collect())
 }
 
-fn observation(row: &AnswerRow) -> Observation<'_> {
-    Observation { answer: answer(row), chose_left: row.chose_left, rt_ms: row.rt_ms }
-}
-
-fn answer(row: &AnswerRow) -> Answer<'_> {
-    Answer {
-        session_id: &row.session_id,
-        block_id: &row.block_id,
-        pair_id: &row.pair_id,
-        chosen_condition: row.chosen_condition(),
+/// Everybody who answered, those whom no rule leaves out, and the others with the reasons; each in the order they began.
+/// Sessions without any answer are not among them.
+fn screened<'a>(
+    study: &StudyDefinition,
+    answers: &'a Answers,
+) -> (Vec<&'a Participant>, Vec<&'a Participant>, Vec<Excluded>) {
+    let everybody = answers.participants();
+    let (mut judged, mut excluded) = (Vec::with_capacity(everybody.len()), Vec::new());
+    for &participant in &everybody {
+        let reasons = screen(study, participant);
+        if reasons.is_empty() {
+            judged.push(participant);
+        } else {
+            excluded.push(Excluded { session_id: participant.session_id.to_string(), reasons });
+        }
     }
-}
-
-/// Who is left out, in the order they began. Sessions without any answer are not among them.
-fn exclusions(study: &StudyDefinition, answers: &[AnswerRow]) -> Vec<Excluded> {
-    if study.screening == Screening::default() {
-        return Vec::new();
-    }
-    let mut sessions: BTreeMap<&str, Vec<Seen<'_>>> = BTreeMap::new();
-    for row in answers {
-        sessions.entry(&row.session_id).or_default().push(Seen {
-            block_id: &row.block_id,
-            chosen_condition: row.chosen_condition(),
-            chose_left: row.chose_left,
-            rt_ms: row.rt_ms,
-        });
-    }
-    let judged = sessions
-        .into_iter()
-        .map(|(id, seen)| Excluded { session_id: id.to_owned(), reasons: screen(study, &seen) });
-    judged.filter(|e| !e.reasons.is_empty()).collect()
+    (everybody, judged, excluded)
 }
 
 /// Why there are no results.

@@ -6,6 +6,9 @@ pub enum StoreError {
     /// The database refused or failed.
     #[error("database: {0}")]
     Database(#[from] sqlx::Error),
+    /// The database could not be read for an analysis.
+    #[error("reading answers: {0}")]
+    Reading(#[from] rusqlite::Error),
     /// The database's layout could not be brought up to date.
     #[error("migrating the database: {0}")]
     Migrate(#[from] sqlx::migrate::MigrateError),

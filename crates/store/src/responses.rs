@@ -9,8 +9,6 @@ use crate::sqlite::Store;
 use serde::Serialize;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
-use std::collections::HashSet;
-use std::sync::Arc;
 
 /// An answer to one trial.
 #[derive(Clone, Debug)]
@@ -36,62 +34,6 @@ pub enum Appended {
     Different,
     /// The session has no trial of this index.
     NoSuchTrial,
-}
-
-/// An answer as analyses read it; equal texts share their memory.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AnswerRow {
-    /// Session's id.
-    pub session_id: Arc<str>,
-    /// Block's id.
-    pub block_id: Arc<str>,
-    /// Pair's id.
-    pub pair_id: Arc<str>,
-    /// Condition on the left.
-    pub left_condition: Arc<str>,
-    /// Condition on the right.
-    pub right_condition: Arc<str>,
-    /// Whether the left picture was chosen.
-    pub chose_left: bool,
-    /// Response time in ms.
-    pub rt_ms: f64,
-}
-
-impl AnswerRow {
-    /// The condition chosen.
-    pub fn chosen_condition(&self) -> &str {
-        if self.chose_left { &self.left_condition } else { &self.right_condition }
-    }
-}
-
-/// The answers to one version of a study up to some moment. Answers are never changed, so it only ever grows:
-/// [`Store::read_on`] adds what has come since.
-#[derive(Clone, Debug, Default)]
-pub struct Answers {
-    rows: Vec<AnswerRow>,
-    texts: HashSet<Arc<str>>,
-    through: i64,
-}
-
-/// Rows that are held twice at a time while answers are read.
-const PAGE: usize = 20_000;
-
-impl Answers {
-    /// The answers in the order they came.
-    pub fn rows(&self) -> &[AnswerRow] {
-        &self.rows
-    }
-
-    fn text(&mut self, text: &str) -> Arc<str> {
-        match self.texts.get(text) {
-            Some(known) => known.clone(),
-            None => {
-                let new: Arc<str> = text.into();
-                self.texts.insert(new.clone());
-                new
-            }
-        }
-    }
 }
 
 /// An answer as stored.
@@ -210,46 +152,6 @@ impl Store {
             .await?;
         tx.commit().await?;
         Ok(Appended::Stored)
-    }
-
-    /// Adds to `answers` what has come since it was last read; always of the same version of the same study.
-    pub async fn read_on(
-        &self,
-        answers: &mut Answers,
-        study_id: &str,
-        config_hash: &str,
-    ) -> Result<(), StoreError> {
-        loop {
-            // CROSS JOIN keeps SQLite from going through all sessions first, once a page.
-            let rows = sqlx::query(
-                "SELECT r.response_id, r.session_id, r.block_id, r.pair_id, r.left_condition, r.right_condition,
-                 r.choice = 'left', r.rt_ms FROM responses r CROSS JOIN sessions s
-                 WHERE s.session_id = r.session_id AND r.response_id > $1 AND s.study_id = $2 AND s.config_hash = $3
-                 ORDER BY r.response_id LIMIT $4",
-            )
-            .bind(answers.through)
-            .bind(study_id)
-            .bind(config_hash)
-            .bind(PAGE as i64)
-            .fetch_all(&self.reader)
-            .await?;
-            for row in &rows {
-                let new = AnswerRow {
-                    session_id: answers.text(row.try_get(1)?),
-                    block_id: answers.text(row.try_get(2)?),
-                    pair_id: answers.text(row.try_get(3)?),
-                    left_condition: answers.text(row.try_get(4)?),
-                    right_condition: answers.text(row.try_get(5)?),
-                    chose_left: row.try_get(6)?,
-                    rt_ms: row.try_get(7)?,
-                };
-                answers.rows.push(new);
-                answers.through = row.try_get(0)?;
-            }
-            if rows.len() < PAGE {
-                return Ok(());
-            }
-        }
     }
 
     /// All answers to a study's version, in the order they came, each with its payload (absent once blanked).

@@ -14,6 +14,9 @@ use std::time::Duration;
 const MIGRATIONS: [(i64, &str, &str); 1] =
     [(1, "first", include_str!("../../../migrations/sqlite/0001_first.sql"))];
 
+/// The database's name in its data folder.
+pub(crate) const DATABASE: &str = "kelir.sqlite";
+
 /// The database and the stimulus files of one data folder.
 #[derive(Clone, Debug)]
 pub struct Store {
@@ -33,7 +36,7 @@ impl Store {
         std::fs::create_dir_all(folder)
             .map_err(|source| StoreError::File { path: folder.to_owned(), source })?;
         let options = SqliteConnectOptions::new()
-            .filename(folder.join("kelir.sqlite"))
+            .filename(folder.join(DATABASE))
             .create_if_missing(true)
             .journal_mode(SqliteJournalMode::Wal)
             .synchronous(SqliteSynchronous::Full)

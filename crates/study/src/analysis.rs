@@ -1,22 +1,11 @@
 //! What the answers of a study add up to: the paper's test, block by block.
 
+use crate::answers::{Participant, blocks, observers};
 use crate::definition::{Kind, StudyDefinition};
 use kelir_stats::inference::t_test_from_counts;
+use kelir_stats::pairwise::{Scale, ScaleOptions, pool, scale};
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap, HashSet};
-
-/// One stored answer.
-#[derive(Clone, Copy, Debug)]
-pub struct Answer<'a> {
-    /// Whose answer; any string that tells participants apart.
-    pub session_id: &'a str,
-    /// Block's id.
-    pub block_id: &'a str,
-    /// Pair's id.
-    pub pair_id: &'a str,
-    /// The condition that was chosen.
-    pub chosen_condition: &'a str,
-}
+use std::collections::BTreeMap;
 
 /// A block's choices of the target per participant, and the paper's two-tailed one-sample t-test of them.
 ///
@@ -57,41 +46,20 @@ pub struct BlockSummary {
     pub note: Option<String>,
 }
 
-/// Summaries of every block but catch blocks, in study order. Answers to blocks, pairs or conditions that the study does not have are left
-/// out; of several answers of one participant to one pair the first counts.
-pub fn summarise<'a>(
-    study: &StudyDefinition,
-    answers: impl IntoIterator<Item = Answer<'a>>,
-) -> Vec<BlockSummary> {
-    let blocks: HashMap<&str, (usize, HashSet<&str>)> = study
-        .blocks
-        .iter()
-        .enumerate()
-        .map(|(i, b)| (b.id.as_str(), (i, b.pairs.iter().map(|p| p.id.as_str()).collect())))
-        .collect();
-    let mut seen: Vec<HashMap<&str, HashMap<&str, bool>>> = vec![HashMap::new(); study.blocks.len()];
-    for answer in answers {
-        let Some((i, pairs)) = blocks.get(answer.block_id) else { continue };
-        let block = &study.blocks[*i];
-        if pairs.contains(answer.pair_id) && block.conditions.iter().any(|c| c == answer.chosen_condition) {
-            let chose_target = answer.chosen_condition == block.target;
-            seen[*i].entry(answer.session_id).or_default().entry(answer.pair_id).or_insert(chose_target);
-        }
-    }
-    study
-        .blocks
-        .iter()
-        .zip(&seen)
+/// Summaries of every block but catch blocks, in study order.
+pub fn summarise(study: &StudyDefinition, participants: &[&Participant]) -> Vec<BlockSummary> {
+    blocks(study)
         .filter(|(block, _)| !block.catch)
-        .map(|(block, participants)| {
+        .map(|(block, range)| {
             let pairs = block.pairs.len();
             let mut counts: BTreeMap<u32, u64> = (0..=pairs as u32).map(|k| (k, 0)).collect();
             let mut incomplete = 0;
-            for answers in participants.values() {
+            for participant in participants {
+                let answers = participant.answers_to(&range);
                 if answers.len() == pairs {
-                    let chosen = answers.values().filter(|target| **target).count();
+                    let chosen = answers.iter().filter(|given| given.chose_target).count();
                     *counts.entry(chosen as u32).or_default() += 1;
-                } else {
+                } else if !answers.is_empty() {
                     incomplete += 1;
                 }
             }
@@ -117,6 +85,25 @@ pub fn summarise<'a>(
         })
         .collect()
 }
+
+/// All conditions on one axis in JOD, by maximum likelihood; its standard errors take the choices as independent, so that a report
+/// resamples participants instead.
+///
+/// # Errors
+/// Why there is no scale, as a sentence.
+pub fn conditions_scale(study: &StudyDefinition, participants: &[&Participant]) -> Result<Scale, String> {
+    let (names, observers) = observers(study, participants);
+    if names.len() < 3 {
+        return Err(TOO_FEW_CONDITIONS.to_owned());
+    }
+    pool(names.len(), &observers)
+        .and_then(|wins| scale(&names, &wins, ScaleOptions::default()))
+        .map_err(|error| format!("No scale: {error}."))
+}
+
+/// Why two conditions have no scale.
+pub(crate) const TOO_FEW_CONDITIONS: &str =
+    "A scale needs three conditions; two are compared by their proportion.";
 
 /// A two-tailed one-sample t-test of a table of counts; a number that is not defined is `None` and the note says why.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

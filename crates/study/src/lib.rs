@@ -9,6 +9,7 @@ mod problems;
 
 pub mod adaptive;
 pub mod analysis;
+pub mod answers;
 pub mod plan;
 pub mod report;
 pub mod screening;

@@ -1,20 +1,8 @@
 //! Who is left out: the rules of the study file, applied the same way each time.
 
+use crate::answers::{Given, Participant, blocks};
 use crate::definition::StudyDefinition;
 use serde::Serialize;
-
-/// One answer, as far as screening looks at it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen<'a> {
-    /// Block's id.
-    pub block_id: &'a str,
-    /// The condition chosen.
-    pub chosen_condition: &'a str,
-    /// Whether the left picture was chosen.
-    pub chose_left: bool,
-    /// Response time in ms.
-    pub rt_ms: f64,
-}
 
 /// Why a participant is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -51,10 +39,11 @@ pub enum Exclusion {
 /// Fewest trials in which always choosing one side says anything: by chance it happens once in 2⁴ times then.
 const STRAIGHT: usize = 5;
 
-/// Every reason of the study's rules to leave a participant with these answers out; none: they stay.
-pub fn screen(study: &StudyDefinition, answers: &[Seen<'_>]) -> Vec<Exclusion> {
+/// Every reason of the study's rules to leave this participant out; none: they stay.
+pub fn screen(study: &StudyDefinition, participant: &Participant) -> Vec<Exclusion> {
     let rules = &study.screening;
-    let count = |is: &dyn Fn(&Seen<'_>) -> bool| answers.iter().filter(|a| is(a)).count() as u32;
+    let answers = participant.answers();
+    let count = |is: &dyn Fn(&Given) -> bool| answers.iter().filter(|a| is(a)).count() as u32;
     let mut reasons = Vec::new();
     if let Some(least) = rules.min_rt_ms {
         let (trials, allowed) = (count(&|a| a.rt_ms < least), rules.max_fast_trials);
@@ -63,9 +52,9 @@ pub fn screen(study: &StudyDefinition, answers: &[Seen<'_>]) -> Vec<Exclusion> {
         }
     }
     if let Some(allowed) = rules.max_failed_catch_trials {
-        let failed =
-            |a: &Seen<'_>| study.block(a.block_id).is_some_and(|b| b.catch && b.target != a.chosen_condition);
-        let trials = count(&failed);
+        let catch = blocks(study).filter(|(block, _)| block.catch);
+        let failed = |(_, pairs)| participant.answers_to(&pairs).iter().filter(|a| !a.chose_target).count();
+        let trials = catch.map(failed).sum::<usize>() as u32;
         if trials > allowed {
             reasons.push(Exclusion::FailedCatchTrials { trials, allowed });
         }
@@ -88,6 +77,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::answers::{Answers, Row};
 
     fn study(screening: &str) -> StudyDefinition {
         let block = |id: &str, catch: &str| {
@@ -110,16 +100,17 @@ mod tests {
         StudyDefinition::parse("s.toml", &text).unwrap()
     }
 
-    /// Six answers: side and time of each; the last three are of the catch block, with the condition chosen.
-    fn answers(sides: [bool; 6], rt_ms: [f64; 6], catch: [&'static str; 3]) -> Vec<Seen<'static>> {
-        (0..6)
-            .map(|i| Seen {
-                block_id: if i < 3 { "main" } else { "easy" },
-                chosen_condition: if i < 3 { "mc" } else { catch[i - 3] },
-                chose_left: sides[i],
-                rt_ms: rt_ms[i],
-            })
-            .collect()
+    /// One participant's answers: side and time of each; the last three are of the catch block, with the condition chosen.
+    fn seen(study: &StudyDefinition, sides: &[bool], rt_ms: [f64; 6], catch: [&str; 3]) -> Participant {
+        let mut answers = Answers::new(study);
+        for (i, &chose_left) in sides.iter().enumerate() {
+            let pair_id = &format!("{}{}", if i < 3 { "main" } else { "easy" }, i % 3);
+            let chosen = if i < 3 { "mc" } else { catch[i - 3] };
+            let other = if chosen == "mc" { "pa" } else { "mc" };
+            let left_condition = if chose_left { chosen } else { other };
+            answers.push(Row { session_id: "s", pair_id, left_condition, chose_left, rt_ms: rt_ms[i] });
+        }
+        answers.participants()[0].clone()
     }
 
     const MIXED: [bool; 6] = [true, false, true, true, false, true];
@@ -127,37 +118,37 @@ mod tests {
     #[test]
     fn each_rule_excludes_beyond_its_limit_and_not_at_it() {
         let fast = study("min_rt_ms = 200, max_fast_trials = 1");
-        let once = answers(MIXED, [100.0, 200.0, 900.0, 900.0, 900.0, 900.0], ["pa"; 3]);
+        let once = seen(&fast, &MIXED, [100.0, 200.0, 900.0, 900.0, 900.0, 900.0], ["pa"; 3]);
         assert!(screen(&fast, &once).is_empty(), "200 ms is not faster than 200 ms, and one is allowed");
-        let twice = answers(MIXED, [100.0, 199.9, 900.0, 900.0, 900.0, 900.0], ["pa"; 3]);
+        let twice = seen(&fast, &MIXED, [100.0, 199.9, 900.0, 900.0, 900.0, 900.0], ["pa"; 3]);
         assert_eq!(screen(&fast, &twice), [Exclusion::TooFast { trials: 2, allowed: 1 }]);
 
         let catch = study("max_failed_catch_trials = 1");
         let slow = [900.0; 6];
-        assert!(screen(&catch, &answers(MIXED, slow, ["pa", "mc", "pa"])).is_empty());
-        let failed = screen(&catch, &answers(MIXED, slow, ["mc", "mc", "pa"]));
+        assert!(screen(&catch, &seen(&catch, &MIXED, slow, ["pa", "mc", "pa"])).is_empty());
+        let failed = screen(&catch, &seen(&catch, &MIXED, slow, ["mc", "mc", "pa"]));
         assert_eq!(failed, [Exclusion::FailedCatchTrials { trials: 2, allowed: 1 }]);
 
         let straight = study("straight_lining = true");
-        assert!(screen(&straight, &answers(MIXED, slow, ["pa"; 3])).is_empty());
+        assert!(screen(&straight, &seen(&straight, &MIXED, slow, ["pa"; 3])).is_empty());
         for side in [true, false] {
-            let same = answers([side; 6], slow, ["pa"; 3]);
-            assert_eq!(screen(&straight, &same), [Exclusion::StraightLining { trials: 6 }]);
-            assert!(screen(&straight, &same[..4]).is_empty(), "four of a kind say nothing");
+            let same = |n: usize| seen(&straight, &[side; 6][..n], slow, ["pa"; 3]);
+            assert_eq!(screen(&straight, &same(6)), [Exclusion::StraightLining { trials: 6 }]);
+            assert!(screen(&straight, &same(4)).is_empty(), "four of a kind say nothing");
         }
 
         let incomplete = study("incomplete = true");
-        assert!(screen(&incomplete, &answers(MIXED, slow, ["pa"; 3])).is_empty());
-        let five = &answers(MIXED, slow, ["pa"; 3])[..5];
+        assert!(screen(&incomplete, &seen(&incomplete, &MIXED, slow, ["pa"; 3])).is_empty());
+        let five = &seen(&incomplete, &MIXED[..5], slow, ["pa"; 3]);
         assert_eq!(screen(&incomplete, five), [Exclusion::Incomplete { answered: 5, trials: 6 }]);
     }
 
     #[test]
     fn without_rules_nobody_is_left_out_and_with_all_every_reason_is_given() {
-        let bad = answers([true; 6], [1.0; 6], ["mc"; 3]);
-        assert!(screen(&study(""), &bad).is_empty());
+        let none = study("");
+        assert!(screen(&none, &seen(&none, &[true; 6], [1.0; 6], ["mc"; 3])).is_empty());
         let all =
             study("min_rt_ms = 200, max_failed_catch_trials = 0, straight_lining = true, incomplete = true");
-        assert_eq!(screen(&all, &bad[..5]).len(), 4);
+        assert_eq!(screen(&all, &seen(&all, &[true; 5], [1.0; 6], ["mc"; 3])).len(), 4);
     }
 }

@@ -90,7 +90,7 @@ async fn judged(app: &Arc<App>, study: String) -> Result<StudyReport, ApiError> 
     let judged = tokio::task::spawn_blocking(move || {
         tokio::runtime::Handle::current().block_on(async {
             let loaded = task.study(&study)?;
-            let answers = loaded.answers(&task.store).await?.clone();
+            let answers = loaded.answers(&task.store).await?;
             report_of(&task.store, &loaded.study, &answers).await.map_err(ApiError::from)
         })
     });
