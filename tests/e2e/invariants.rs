@@ -8,10 +8,14 @@ use serde_json::Value;
 /// Crates that stay pure: no async runtime, database, web server or GPU anywhere below them.
 const PURE: [&str; 6] =
     ["kelir-scene", "kelir-stats", "kelir-study", "kelir-vision", "kelir-plot", "kelir-report"];
-const IMPURE: [&str; 4] = ["tokio", "sqlx", "axum", "wgpu"];
+const IMPURE: [&str; 5] = ["tokio", "sqlx", "rusqlite", "axum", "wgpu"];
 /// Libraries that one room alone may name.
-const OWNED: [(&str, &str); 3] =
-    [("wgpu", "kelir-render"), ("sqlx", "kelir-store"), ("axum", "kelir-server")];
+const OWNED: [(&str, &str); 4] = [
+    ("wgpu", "kelir-render"),
+    ("sqlx", "kelir-store"),
+    ("rusqlite", "kelir-store"),
+    ("axum", "kelir-server"),
+];
 
 /// Every broken invariant, as a sentence.
 fn violations(metadata: &Value) -> Vec<String> {

@@ -53,7 +53,8 @@ pub struct StudyResults {
 /// # Errors
 /// The store cannot be read.
 pub async fn results(store: &Store, study: &StudyDefinition) -> Result<StudyResults, StoreError> {
-    results_of(store, study, &read(store, study).await?).await
+    let answers = read(store, study).await?;
+    results_of(store, study, &answers).await
 }
 
 async fn read(store: &Store, study: &StudyDefinition) -> Result<Arc<Answers>, StoreError> {
@@ -96,7 +97,8 @@ pub(crate) async fn results_of(
 /// # Errors
 /// The store cannot be read.
 pub async fn report(store: &Store, study: &StudyDefinition) -> Result<StudyReport, StoreError> {
-    report_of(store, study, &read(store, study).await?).await
+    let answers = read(store, study).await?;
+    report_of(store, study, &answers).await
 }
 
 /// The same from answers that have been read.

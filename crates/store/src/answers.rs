@@ -57,7 +57,7 @@ impl Store {
             empty: stored.answers.emptied(),
         };
         let after = stored.through;
-        let read = tokio::task::spawn_blocking(move || source.read(after));
+        let read = tokio::task::spawn_blocking(move || source.read(after, SHARE));
         let (through, parts) = read.await.map_err(|e| StoreError::corrupt("answers", e))??;
         if parts.iter().any(|part| !part.is_empty()) {
             let answers = Arc::make_mut(&mut stored.answers);
@@ -77,8 +77,8 @@ struct Source {
 }
 
 impl Source {
-    /// The answers after a response id, in parts by rising ids, and the id of the last.
-    fn read(&self, after: i64) -> Result<(i64, Vec<Answers>), StoreError> {
+    /// The answers after a response id, in parts by rising ids of at least `share` rows, and the id of the last.
+    fn read(&self, after: i64, share: i64) -> Result<(i64, Vec<Answers>), StoreError> {
         let newest = "SELECT coalesce(max(response_id), 0) FROM responses";
         let through: i64 = self.connect()?.query_row(newest, [], |row| row.get(0))?;
         if through <= after {
@@ -87,7 +87,7 @@ impl Source {
         // What is committed up to here stays as it is, whatever is written meanwhile: each thread may look on its own.
         let rows = through - after;
         let cores = std::thread::available_parallelism().map_or(1, |n| n.get() as i64);
-        let parts = (rows / SHARE).clamp(1, cores);
+        let parts = (rows / share).clamp(1, cores);
         let range = |part: i64| after + 1 + rows * part / parts..=after + rows * (part + 1) / parts;
         let answers = std::thread::scope(|scope| {
             let threads: Vec<_> =
@@ -147,3 +147,6 @@ impl Source {
 fn text<'a>(row: &'a rusqlite::Row<'_>, column: usize) -> Result<&'a str, StoreError> {
     row.get_ref(column)?.as_str().map_err(|e| StoreError::corrupt("answer", e))
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,11 +4,11 @@ use crate::chain::{ChainRow, GENESIS};
 use crate::clock;
 use crate::error::StoreError;
 use crate::files::sha256_hex;
-use crate::sessions::Session;
+use crate::sessions::{PlannedTrial, Session};
 use crate::sqlite::Store;
 use serde::Serialize;
 use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
 /// An answer to one trial.
 #[derive(Clone, Debug)]
@@ -77,7 +77,7 @@ impl Store {
         let Some(planned) = session.trials.get(new.trial_index as usize) else {
             return Ok(Appended::NoSuchTrial);
         };
-        let choice = if new.chose_left { "left" } else { "right" };
+        let choice = choice(new.chose_left);
         let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let stored =
             sqlx::query("SELECT choice, rt_ms FROM responses WHERE session_id = $1 AND trial_index = $2")
@@ -90,64 +90,12 @@ impl Store {
                 && stored.try_get::<f64, _>("rt_ms")? == new.rt_ms;
             return Ok(if same { Appended::Same } else { Appended::Different });
         }
-        let last =
-            sqlx::query("SELECT response_id, row_hash FROM responses ORDER BY response_id DESC LIMIT 1")
-                .fetch_optional(&mut *tx)
-                .await?;
-        let (last_id, prev_hash) = match last {
-            Some(row) => (row.try_get::<i64, _>("response_id")?, row.try_get::<String, _>("row_hash")?),
-            None => (0, GENESIS.to_owned()),
-        };
-        let trial = &planned.trial;
-        let row = ResponseRow {
-            response_id: last_id + 1,
-            session_id: session.session_id.clone(),
-            subject_id: session.subject_id.clone(),
-            trial_index: new.trial_index,
-            block_id: trial.block_id.clone(),
-            pair_id: trial.pair_id.clone(),
-            left_sha256: planned.left_sha256.clone(),
-            right_sha256: planned.right_sha256.clone(),
-            left_condition: trial.left.clone(),
-            right_condition: trial.right.clone(),
-            choice: choice.to_owned(),
-            chosen_condition: if new.chose_left { trial.left.clone() } else { trial.right.clone() },
-            rt_ms: new.rt_ms,
-            received_at: clock::now(),
-            payload_hash: sha256_hex(new.payload.as_bytes()),
-        };
-        let row_hash = ChainRow { row: &row, prev_hash: &prev_hash }.hash();
-        sqlx::query(
-            "INSERT INTO responses (response_id, session_id, trial_index, block_id, pair_id, left_sha256, right_sha256,
-             left_condition, right_condition, choice, chosen_condition, rt_ms, received_at, payload_hash, prev_hash, row_hash)
-             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16)",
-        )
-        .bind(row.response_id)
-        .bind(&row.session_id)
-        .bind(row.trial_index)
-        .bind(&row.block_id)
-        .bind(&row.pair_id)
-        .bind(&row.left_sha256)
-        .bind(&row.right_sha256)
-        .bind(&row.left_condition)
-        .bind(&row.right_condition)
-        .bind(&row.choice)
-        .bind(&row.chosen_condition)
-        .bind(row.rt_ms)
-        .bind(&row.received_at)
-        .bind(&row.payload_hash)
-        .bind(&prev_hash)
-        .bind(&row_hash)
-        .execute(&mut *tx)
-        .await?;
-        sqlx::query("INSERT INTO response_payloads (response_id, payload) VALUES ($1, $2)")
-            .bind(row.response_id)
-            .bind(&new.payload)
-            .execute(&mut *tx)
-            .await?;
+        let mut chain = Head::read(&mut tx).await?;
+        let now = clock::now();
+        chain.append(&mut tx, session, planned, &new, &now).await?;
         sqlx::query("UPDATE sessions SET last_seen_at = $2 WHERE session_id = $1")
             .bind(&session.session_id)
-            .bind(&row.received_at)
+            .bind(&now)
             .execute(&mut *tx)
             .await?;
         tx.commit().await?;
@@ -170,6 +118,92 @@ impl Store {
         .fetch_all(&self.reader)
         .await?;
         rows.iter().map(|row| Ok((read_response(row)?, row.try_get("payload")?))).collect()
+    }
+}
+
+fn choice(left: bool) -> &'static str {
+    if left { "left" } else { "right" }
+}
+
+/// The end of the chain of answers, while its one writer holds it.
+pub(crate) struct Head {
+    response_id: i64,
+    row_hash: String,
+}
+
+impl Head {
+    /// The last row's.
+    pub(crate) async fn read(writer: &mut SqliteConnection) -> Result<Head, StoreError> {
+        let last =
+            sqlx::query("SELECT response_id, row_hash FROM responses ORDER BY response_id DESC LIMIT 1")
+                .fetch_optional(writer)
+                .await?;
+        Ok(match last {
+            Some(row) => {
+                Head { response_id: row.try_get("response_id")?, row_hash: row.try_get("row_hash")? }
+            }
+            None => Head { response_id: 0, row_hash: GENESIS.to_owned() },
+        })
+    }
+
+    /// Writes the next row and its payload, and moves on to it.
+    pub(crate) async fn append(
+        &mut self,
+        writer: &mut SqliteConnection,
+        session: &Session,
+        planned: &PlannedTrial,
+        new: &NewResponse,
+        now: &str,
+    ) -> Result<(), StoreError> {
+        let trial = &planned.trial;
+        let row = ResponseRow {
+            response_id: self.response_id + 1,
+            session_id: session.session_id.clone(),
+            subject_id: session.subject_id.clone(),
+            trial_index: new.trial_index,
+            block_id: trial.block_id.clone(),
+            pair_id: trial.pair_id.clone(),
+            left_sha256: planned.left_sha256.clone(),
+            right_sha256: planned.right_sha256.clone(),
+            left_condition: trial.left.clone(),
+            right_condition: trial.right.clone(),
+            choice: choice(new.chose_left).to_owned(),
+            chosen_condition: if new.chose_left { trial.left.clone() } else { trial.right.clone() },
+            rt_ms: new.rt_ms,
+            received_at: now.to_owned(),
+            payload_hash: sha256_hex(new.payload.as_bytes()),
+        };
+        let row_hash = ChainRow { row: &row, prev_hash: &self.row_hash }.hash();
+        sqlx::query(
+            "INSERT INTO responses (response_id, session_id, trial_index, block_id, pair_id, left_sha256, right_sha256,
+             left_condition, right_condition, choice, chosen_condition, rt_ms, received_at, payload_hash, prev_hash, row_hash)
+             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16)",
+        )
+        .bind(row.response_id)
+        .bind(&row.session_id)
+        .bind(row.trial_index)
+        .bind(&row.block_id)
+        .bind(&row.pair_id)
+        .bind(&row.left_sha256)
+        .bind(&row.right_sha256)
+        .bind(&row.left_condition)
+        .bind(&row.right_condition)
+        .bind(&row.choice)
+        .bind(&row.chosen_condition)
+        .bind(row.rt_ms)
+        .bind(&row.received_at)
+        .bind(&row.payload_hash)
+        .bind(&self.row_hash)
+        .bind(&row_hash)
+        .execute(&mut *writer)
+        .await?;
+        sqlx::query("INSERT INTO response_payloads (response_id, payload) VALUES ($1, $2)")
+            .bind(row.response_id)
+            .bind(&new.payload)
+            .execute(&mut *writer)
+            .await?;
+        *self = Head { response_id: row.response_id, row_hash };
+        Ok(())
     }
 }
 

@@ -7,7 +7,7 @@ use kelir_study::plan::lowest_free_slot;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::time::Duration;
 
 /// What is known of someone who begins.
@@ -144,27 +144,7 @@ impl Store {
             completed_at: None,
             completion_code: None,
         };
-        let trials = serde_json::to_string(&session.trials).map_err(|e| StoreError::corrupt("trials", e))?;
-        sqlx::query(
-            "INSERT INTO sessions (session_id, study_id, config_hash, subject_id, token_hash, slot, plan_seed, trials,
-             trial_count, params, display, created_at, last_seen_at)
-             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13)",
-        )
-        .bind(&session.session_id)
-        .bind(&session.study_id)
-        .bind(&session.config_hash)
-        .bind(&session.subject_id)
-        .bind(&session.token_hash)
-        .bind(session.slot)
-        .bind(&session.plan_seed)
-        .bind(trials)
-        .bind(session.trials.len() as i64)
-        .bind(session.params.to_string())
-        .bind(session.display.to_string())
-        .bind(&session.created_at)
-        .bind(&session.last_seen_at)
-        .execute(&mut *tx)
-        .await?;
+        insert_session(&mut tx, &session).await?;
         tx.commit().await?;
         Ok(session)
     }
@@ -299,6 +279,37 @@ impl Store {
         .await?;
         rows.iter().map(|row| Ok((row.try_get("config_hash")?, row.try_get::<i64, _>("n")? as u64))).collect()
     }
+}
+
+pub(crate) async fn insert_session(
+    writer: &mut SqliteConnection,
+    session: &Session,
+) -> Result<(), StoreError> {
+    let trials = serde_json::to_string(&session.trials).map_err(|e| StoreError::corrupt("trials", e))?;
+    sqlx::query(
+        "INSERT INTO sessions (session_id, study_id, config_hash, subject_id, token_hash, slot, plan_seed, trials,
+         trial_count, params, display, created_at, last_seen_at, consented_at, completed_at, completion_code)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16)",
+    )
+    .bind(&session.session_id)
+    .bind(&session.study_id)
+    .bind(&session.config_hash)
+    .bind(&session.subject_id)
+    .bind(&session.token_hash)
+    .bind(session.slot)
+    .bind(&session.plan_seed)
+    .bind(trials)
+    .bind(session.trials.len() as i64)
+    .bind(session.params.to_string())
+    .bind(session.display.to_string())
+    .bind(&session.created_at)
+    .bind(&session.last_seen_at)
+    .bind(&session.consented_at)
+    .bind(&session.completed_at)
+    .bind(&session.completion_code)
+    .execute(writer)
+    .await?;
+    Ok(())
 }
 
 fn read_session(row: &SqliteRow) -> Result<Session, StoreError> {

@@ -11,8 +11,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Applied migrations never change; a new one is a new line.
-const MIGRATIONS: [(i64, &str, &str); 1] =
-    [(1, "first", include_str!("../../../migrations/sqlite/0001_first.sql"))];
+const MIGRATIONS: [(i64, &str, &str); 2] = [
+    (1, "first", include_str!("../../../migrations/sqlite/0001_first.sql")),
+    (2, "sessions counted", include_str!("../../../migrations/sqlite/0002_sessions_counted.sql")),
+];
 
 /// The database's name in its data folder.
 pub(crate) const DATABASE: &str = "kelir.sqlite";

@@ -199,3 +199,6 @@ pub fn observers(study: &StudyDefinition, participants: &[&Participant]) -> (Vec
         .collect();
     (names, observers)
 }
+
+#[cfg(test)]
+mod tests;

@@ -64,7 +64,9 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn raw(&mut self, key: &'static str) -> Option<&'a Value> {
-        self.asked.push(key);
+        if !self.asked.contains(&key) {
+            self.asked.push(key);
+        }
         self.table.get(key)
     }
 
@@ -91,7 +93,7 @@ impl<'a> Fields<'a> {
         read: impl FnOnce(&'a Value) -> Option<T>,
     ) -> Option<T> {
         if !self.table.contains_key(key) {
-            self.asked.push(key);
+            self.raw(key);
             self.gatherer.report(&self.path_of(key), None, format!("missing; must be {rule}"));
             return None;
         }

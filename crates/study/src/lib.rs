@@ -11,6 +11,7 @@ pub mod adaptive;
 pub mod analysis;
 pub mod answers;
 pub mod plan;
+pub mod power;
 pub mod report;
 pub mod screening;
 

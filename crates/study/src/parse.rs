@@ -18,14 +18,7 @@ impl StudyDefinition {
     /// # Errors
     /// Every problem of the file, in one list.
     pub fn parse(file: &str, source: &str) -> Result<StudyDefinition, StudyErrors> {
-        let table = source.parse::<Table>().map_err(|error| {
-            let field = match error.span() {
-                Some(span) => position(source, span.start),
-                None => "text".to_owned(),
-            };
-            let rule = format!("is no TOML: {}", error.message());
-            StudyErrors(vec![Problem { file: file.to_owned(), field, value: None, rule }])
-        })?;
+        let table = table(file, source)?;
         let gatherer = Gatherer::new(file);
         let study = read_study(&gatherer, file, &table);
         match (study, gatherer.into_problems()) {
@@ -33,6 +26,18 @@ impl StudyDefinition {
             (_, problems) => Err(StudyErrors(problems)),
         }
     }
+}
+
+/// The file's text as TOML, or where it is none.
+pub(crate) fn table(file: &str, source: &str) -> Result<Table, StudyErrors> {
+    source.parse::<Table>().map_err(|error| {
+        let field = match error.span() {
+            Some(span) => position(source, span.start),
+            None => "text".to_owned(),
+        };
+        let rule = format!("is no TOML: {}", error.message());
+        StudyErrors(vec![Problem { file: file.to_owned(), field, value: None, rule }])
+    })
 }
 
 fn position(source: &str, offset: usize) -> String {

@@ -10,6 +10,7 @@ use super::drawing::{Drawing, render_error};
 mod accuracy;
 mod frames;
 mod numerics;
+mod rows;
 
 /// Subcommands of `kelir bench`.
 #[derive(clap::Subcommand)]
@@ -46,6 +47,8 @@ pub enum Command {
         #[arg(long, value_name = "FILE", conflicts_with = "stats")]
         json: Option<PathBuf>,
     },
+    /// How long judging a million answers takes, from the database to the researcher's page.
+    Rows(rows::Args),
 }
 
 /// Runs the command.
@@ -58,6 +61,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Numerics { stats: true, .. } => numerics::statistics(),
         Command::Numerics { curves: true, json, .. } => numerics::curves(json.as_deref()),
         Command::Numerics { most, json, .. } => numerics::renderer(most, json.as_deref()),
+        Command::Rows(args) => rows::run(&args),
     }
 }
 

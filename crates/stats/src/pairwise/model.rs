@@ -29,8 +29,8 @@ pub(super) struct Link {
 }
 
 impl Model {
-    /// JOD per unit of the latent scale: 1/P⁻¹(.75).
-    pub(super) fn jod(self) -> f64 {
+    /// JOD per unit of the latent scale, 1/P⁻¹(.75): under Thurstone's model the standard deviation of a choice's noise, in JOD.
+    pub fn jod(self) -> f64 {
         match self {
             // 1/Φ⁻¹(.75); pwcmp rounds it to 1.4826.
             Self::Thurstone => 1.482_602_218_505_602,

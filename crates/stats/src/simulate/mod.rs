@@ -36,8 +36,8 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// The rate of `hits` in `runs`; 0 in [0, 1] for no runs.
-    fn new(hits: u64, runs: u64, undefined: u64) -> Self {
+    /// The rate of `hits` ≤ `runs` in `runs` simulated studies that could be told and `undefined` that couldn't; 0 in [0, 1] for no runs.
+    pub fn new(hits: u64, runs: u64, undefined: u64) -> Self {
         let n = runs as f64;
         if runs == 0 {
             return Self { rate: 0.0, low: 0.0, high: 1.0, hits, runs, undefined };

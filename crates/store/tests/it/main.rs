@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used)]
 
 mod killed;
+mod migrating;
 mod setting;
 
-use kelir_store::{Appended, Completed, Store, StoreError};
+use kelir_store::{Appended, Completed, Store, StoreError, StoredAnswers};
 use setting::{answer, begin, open};
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
 use std::path::Path;
@@ -220,23 +221,31 @@ async fn every_connection_has_the_pragmas_that_durability_rests_on() {
 async fn reading_on_adds_what_has_come_since_and_nothing_twice() {
     let (_folder, store) = open().await;
     let session = begin(&store, Duration::from_secs(60)).await;
-    let (study, hash) = (session.study_id.as_str(), session.config_hash.as_str());
-    let mut answers = kelir_store::Answers::default();
-    store.read_on(&mut answers, study, hash).await.unwrap();
-    assert!(answers.rows().is_empty());
-    for trial in [2, 0, 1] {
+    let study = setting::study();
+    let mut stored = StoredAnswers::new(&study);
+    store.read_on(&mut stored).await.unwrap();
+    assert!(stored.answers().is_empty());
+    for (trial, answers) in [(2, 1), (0, 2), (1, 3)] {
         store.append_response(&session, answer(trial, trial == 0, 7.5)).await.unwrap();
-        store.read_on(&mut answers, study, hash).await.unwrap();
-        store.read_on(&mut answers, study, hash).await.unwrap();
+        store.read_on(&mut stored).await.unwrap();
+        store.read_on(&mut stored).await.unwrap();
+        assert_eq!(stored.answers().len(), answers);
     }
-    let read: Vec<(&str, bool)> = answers.rows().iter().map(|r| (&*r.pair_id, r.chose_left)).collect();
-    let pair = |trial: usize| session.trials[trial].trial.pair_id.as_str();
-    assert_eq!(read, [(pair(2), false), (pair(0), true), (pair(1), false)]);
-    assert_eq!(answers.rows()[1].chosen_condition(), session.trials[0].trial.left);
-    let mut whole = kelir_store::Answers::default();
-    store.read_on(&mut whole, study, hash).await.unwrap();
-    assert_eq!(whole.rows(), answers.rows());
-    let mut other = kelir_store::Answers::default();
-    store.read_on(&mut other, study, "another version").await.unwrap();
-    assert!(other.rows().is_empty());
+    let answers = stored.answers();
+    let [participant] = answers.participants()[..] else { panic!("one took part") };
+    assert_eq!(*participant.session_id, *session.session_id);
+    for given in participant.answers() {
+        let planned = session.trials.iter().find(|t| t.trial.pair_index == given.pair).unwrap();
+        let chose_left = planned.trial.trial_index == 0;
+        assert_eq!((given.chose_left, given.rt_ms), (chose_left, 7.5));
+        assert_eq!(given.chose_target, planned.trial.target_left == chose_left);
+    }
+    let mut whole = StoredAnswers::new(&study);
+    store.read_on(&mut whole).await.unwrap();
+    assert_eq!(whole.answers().participants(), answers.participants());
+    let mut changed = study.clone();
+    changed.title = "Another version".to_owned();
+    let mut other = StoredAnswers::new(&changed);
+    store.read_on(&mut other).await.unwrap();
+    assert!(other.answers().is_empty());
 }

@@ -30,7 +30,7 @@ pub async fn open() -> (TempDir, Store) {
     (folder, store)
 }
 
-fn study() -> StudyDefinition {
+pub fn study() -> StudyDefinition {
     StudyDefinition::parse("small.toml", STUDY).unwrap()
 }
 

@@ -11,23 +11,13 @@ pub use psychometric::{
 };
 pub use scaling::{Consistency, Triads};
 
-use crate::analysis::{Answer, BlockSummary, summarise};
-use crate::definition::StudyDefinition;
+use crate::analysis::{BlockSummary, summarise};
+use crate::answers::{Given, Participant, blocks};
+use crate::definition::{Block, StudyDefinition};
 use kelir_stats::inference::holm;
 use kelir_stats::pairwise::ScaleIntervals;
 use serde::Serialize;
-use std::collections::HashMap;
-
-/// One answer as the report reads it.
-#[derive(Clone, Copy, Debug)]
-pub struct Observation<'a> {
-    /// Whose and what was chosen.
-    pub answer: Answer<'a>,
-    /// Whether the left picture was chosen.
-    pub chose_left: bool,
-    /// Response time in ms.
-    pub rt_ms: f64,
-}
+use std::ops::Range;
 
 /// A study judged.
 #[derive(Clone, Debug, Serialize)]
@@ -91,25 +81,21 @@ pub struct Quartiles {
 }
 
 impl Report {
-    /// Judges the answers to a study; those of excluded participants are to be left out by the caller. Resampling is seeded
-    /// by the study's seed.
-    pub fn of(study: &StudyDefinition, observations: &[Observation<'_>]) -> Report {
-        let summaries = summarise(study, observations.iter().map(|o| o.answer));
+    /// Judges the answers to a study; excluded participants are to be left out by the caller. Resampling is seeded by the
+    /// study's seed.
+    pub fn of(study: &StudyDefinition, participants: &[&Participant]) -> Report {
+        let summaries = summarise(study, participants);
         let defined: Vec<f64> = summaries.iter().filter_map(|s| s.p).collect();
         let mut corrected = holm(&defined).unwrap_or_default().into_iter();
-        let mut by_block: HashMap<&str, Vec<&Observation<'_>>> = HashMap::new();
-        for observation in observations {
-            by_block.entry(observation.answer.block_id).or_default().push(observation);
-        }
-        let blocks = summaries
-            .into_iter()
-            .map(|summary| {
+        let blocks = blocks(study)
+            .filter(|(block, _)| !block.catch)
+            .zip(summaries)
+            .map(|((block, pairs), summary)| {
                 let p_holm = summary.p.and_then(|_| corrected.next());
-                let seen = by_block.get(summary.id.as_str()).map(Vec::as_slice).unwrap_or_default();
-                block_report(study, summary, p_holm, seen)
+                block_report(study, block, &pairs, summary, p_holm, participants)
             })
             .collect();
-        let (scale, consistency, scale_note) = match scaling::scale(study, observations) {
+        let (scale, consistency, scale_note) = match scaling::scale(study, participants) {
             Ok((scale, consistency)) => (Some(scale), Some(consistency), None),
             Err(note) => (None, None, Some(note)),
         };
@@ -122,34 +108,40 @@ impl Report {
 
 fn block_report(
     study: &StudyDefinition,
+    block: &Block,
+    places: &Range<u32>,
     summary: BlockSummary,
     p_holm: Option<f64>,
-    seen: &[&Observation<'_>],
+    participants: &[&Participant],
 ) -> BlockReport {
     let analysis = ChoiceAnalysis::of_counts(&summary.counts, summary.pairs as u32, study.seed);
-    let pairs = study.block(&summary.id).map(|block| block.pairs.as_slice()).unwrap_or_default();
-    let by_pair = pairs
+    let seen: Vec<&[Given]> = participants.iter().map(|p| p.answers_to(places)).collect();
+    let given = || seen.iter().copied().flatten();
+    let (mut chosen, mut trials) = (vec![0; block.pairs.len()], vec![0; block.pairs.len()]);
+    for answer in given() {
+        let pair = (answer.pair - places.start) as usize;
+        trials[pair] += 1;
+        chosen[pair] += u64::from(answer.chose_target);
+    }
+    let by_pair = block
+        .pairs
         .iter()
-        .map(|pair| {
-            let of_pair = seen.iter().filter(|o| o.answer.pair_id == pair.id);
-            let (mut chosen, mut trials) = (0, 0);
-            for observation in of_pair {
-                trials += 1;
-                chosen += u64::from(observation.answer.chosen_condition == summary.target);
-            }
-            PairReport { id: pair.id.clone(), target: Proportion::of(chosen, trials) }
+        .zip(chosen.into_iter().zip(trials))
+        .map(|(pair, (chosen, trials))| PairReport {
+            id: pair.id.clone(),
+            target: Proportion::of(chosen, trials),
         })
         .collect();
-    let psychometric = study.block(&summary.id).and_then(|block| psychometric::of(block, seen, study.seed));
-    let mut times: Vec<f64> = seen.iter().map(|o| o.rt_ms).filter(|ms| ms.is_finite()).collect();
+    let psychometric = psychometric::of(block, places, &seen, study.seed);
+    let mut times: Vec<f64> = given().map(|answer| answer.rt_ms).filter(|ms| ms.is_finite()).collect();
     times.sort_by(f64::total_cmp);
-    let lefts = seen.iter().filter(|o| o.chose_left).count() as u64;
+    let lefts = given().filter(|answer| answer.chose_left).count() as u64;
     BlockReport {
         p_holm,
         analysis,
         by_pair,
         psychometric,
-        left: Proportion::of(lefts, seen.len() as u64),
+        left: Proportion::of(lefts, given().count() as u64),
         rt_ms: Quartiles::of_sorted(&times),
         rt_percentiles_ms: (1..100).filter_map(|p| quantile(&times, f64::from(p) / 100.0)).collect(),
         summary,

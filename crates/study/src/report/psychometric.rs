@@ -1,7 +1,7 @@
 //! A block's psychometric function: how the share of target choices depends on the pairs' level.
 
-use super::Observation;
 use super::choices::{LEVEL, Proportion, REPLICATES};
+use crate::answers::Given;
 use crate::definition::{Block, Direction, GUESS, Psychometric};
 use kelir_stats::clustered::Bootstrap;
 use kelir_stats::psychometric::{
@@ -9,7 +9,7 @@ use kelir_stats::psychometric::{
     resampled_threshold,
 };
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Observers simulated for the goodness of fit.
 const SIMULATIONS: usize = 1000;
@@ -111,30 +111,29 @@ pub struct CurvePoint {
     pub share: f64,
 }
 
-/// The block's psychometric function, if its file asks for one; `seen`: answers to the block.
-pub(super) fn of(block: &Block, seen: &[&Observation<'_>], seed: u64) -> Option<PsychometricReport> {
+/// The block's psychometric function, if its file asks for one; `places`: of its pairs; `seen`: each participant's answers to it.
+pub(super) fn of(
+    block: &Block,
+    places: &Range<u32>,
+    seen: &[&[Given]],
+    seed: u64,
+) -> Option<PsychometricReport> {
     let asked = block.psychometric.as_ref()?;
     let sign = asked.direction.sign();
-    let x_of = |pair: &str| block.pairs.iter().find(|p| p.id == pair)?.level.map(|level| sign * level);
-    let mut people: BTreeMap<&str, Vec<Level>> = BTreeMap::new();
-    for observation in seen {
-        let Some(x) = x_of(observation.answer.pair_id) else { continue };
-        let correct = u64::from(observation.answer.chosen_condition == block.target);
-        people.entry(observation.answer.session_id).or_default().push(Level { x, correct, trials: 1 });
-    }
-    let people: Vec<Vec<Level>> = people.into_values().collect();
-    Some(judge(asked, block.pairs.iter().filter_map(|p| p.level), &people, seed))
+    let xs: Vec<f64> = block.pairs.iter().filter_map(|pair| pair.level).map(|level| sign * level).collect();
+    let level = |given: &Given| {
+        let x = *xs.get((given.pair - places.start) as usize)?;
+        Some(Level { x, correct: u64::from(given.chose_target), trials: 1 })
+    };
+    let answered = seen.iter().filter(|answers| !answers.is_empty());
+    let people: Vec<Vec<Level>> =
+        answered.map(|answers| answers.iter().filter_map(level).collect()).collect();
+    Some(judge(asked, &xs, &people, seed))
 }
 
-fn judge(
-    asked: &Psychometric,
-    levels: impl Iterator<Item = f64>,
-    people: &[Vec<Level>],
-    seed: u64,
-) -> PsychometricReport {
+fn judge(asked: &Psychometric, xs: &[f64], people: &[Vec<Level>], seed: u64) -> PsychometricReport {
     let sign = asked.direction.sign();
-    let mut levels: Vec<Level> =
-        levels.map(|level| Level { x: sign * level, correct: 0, trials: 0 }).collect();
+    let mut levels: Vec<Level> = xs.iter().map(|&x| Level { x, correct: 0, trials: 0 }).collect();
     levels.sort_by(|a, b| a.x.total_cmp(&b.x));
     levels.dedup_by(|a, b| a.x == b.x);
     for answer in people.iter().flatten() {

@@ -1,13 +1,14 @@
 //! All conditions on one axis, and how far the answers bear that out.
 
-use super::{LEVEL, Observation, REPLICATES};
+use super::{LEVEL, REPLICATES};
+use crate::analysis::TOO_FEW_CONDITIONS;
+use crate::answers::{Participant, observers};
 use crate::definition::StudyDefinition;
 use kelir_stats::pairwise::{
-    Choice, Observer, ObserverFit, ScaleIntervals, ScaleOptions, circular_triads, observer_intervals,
-    odd_observers, pool,
+    Observer, ObserverFit, ScaleIntervals, ScaleOptions, circular_triads, observer_intervals, odd_observers,
+    pool,
 };
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap};
 
 /// Above this many observers none is looked at alone: each costs a fit of all the others.
 const MOST_SCREENED: usize = 2000;
@@ -36,44 +37,18 @@ pub struct Triads {
     pub consistence: Option<f64>,
 }
 
-/// The conditions' positions from all blocks but catch blocks. Blocks of stills and of animations are pooled: the scale is
-/// of conditions, whatever is shown.
+/// The conditions' positions from all blocks but catch blocks.
 ///
 /// # Errors
 /// Why there is no scale, as a sentence.
 pub(super) fn scale(
     study: &StudyDefinition,
-    observations: &[Observation<'_>],
+    participants: &[&Participant],
 ) -> Result<(ScaleIntervals, Consistency), String> {
-    let blocks: HashMap<&str, &[String; 2]> =
-        study.blocks.iter().filter(|b| !b.catch).map(|b| (b.id.as_str(), &b.conditions)).collect();
-    let mut names: Vec<String> = blocks.values().flat_map(|c| c.iter().cloned()).collect();
-    names.sort();
-    names.dedup();
+    let (names, observers) = observers(study, participants);
     if names.len() < 3 {
-        return Err("A scale needs three conditions; two are compared by their proportion.".to_owned());
+        return Err(TOO_FEW_CONDITIONS.to_owned());
     }
-    let index: HashMap<&str, usize> = names.iter().enumerate().map(|(i, n)| (n.as_str(), i)).collect();
-    let mut observers: BTreeMap<&str, BTreeMap<(usize, usize), u64>> = BTreeMap::new();
-    for Observation { answer, .. } in observations {
-        let Some([a, b]) = blocks.get(answer.block_id) else { continue };
-        let (winner, loser) = if answer.chosen_condition == a {
-            (a, b)
-        } else if answer.chosen_condition == b {
-            (b, a)
-        } else {
-            continue;
-        };
-        let choices = observers.entry(answer.session_id).or_default();
-        *choices.entry((index[winner.as_str()], index[loser.as_str()])).or_default() += 1;
-    }
-    let observers: Vec<Observer> = observers
-        .into_iter()
-        .map(|(id, choices)| {
-            let choice = |((winner, loser), times)| Choice { winner, loser, times };
-            Observer { id: id.to_owned(), choices: choices.into_iter().map(choice).collect() }
-        })
-        .collect();
     let options = ScaleOptions::default();
     let found = observer_intervals(&names, &observers, options, REPLICATES, LEVEL, study.seed)
         .map_err(|error| format!("No scale: {error}."))?;

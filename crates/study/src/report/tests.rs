@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::answers::{Answers, Row};
 
 const STUDY: &str = r#"
 title = "t"
@@ -38,29 +39,31 @@ fn study() -> StudyDefinition {
     StudyDefinition::parse("s.toml", STUDY).unwrap()
 }
 
-/// Participant i chooses the target of pair a when bit 0 of i is set, of b bit 1, of c bit 2.
-fn ids() -> Vec<String> {
-    (0..16).map(|i| format!("p{i:02}")).collect()
-}
+const PAIRS: [(&str, &str); 4] = [("a", "mc"), ("b", "mc"), ("c", "photo"), ("d", "mc")];
 
-fn observations(ids: &[String]) -> Vec<Observation<'_>> {
-    let mut all = Vec::new();
-    for (i, id) in ids.iter().enumerate() {
-        let pairs =
-            [("stills", "a", "mc"), ("stills", "b", "mc"), ("photos", "c", "photo"), ("easy", "d", "mc")];
-        for (bit, (block_id, pair_id, other)) in pairs.into_iter().enumerate() {
-            let chosen_condition = if i >> bit & 1 == 1 { "pa" } else { other };
-            let answer = Answer { session_id: id, block_id, pair_id, chosen_condition };
-            all.push(Observation { answer, chose_left: bit == 0, rt_ms: 100.0 * (i + 1) as f64 });
+/// What `people` participants choose of pair k, given by participant and k; the left picture is chosen of pair a alone.
+fn answers(people: usize, chosen: impl Fn(usize, usize) -> &'static str) -> Answers {
+    let mut answers = Answers::new(&study());
+    for i in 0..people {
+        for (k, (pair_id, other)) in PAIRS.into_iter().enumerate() {
+            let (chosen, chose_left) = (chosen(i, k), k == 0);
+            let rest = if chosen == "pa" { other } else { "pa" };
+            let left_condition = if chose_left { chosen } else { rest };
+            let (session_id, rt_ms) = (&format!("p{i:02}"), 100.0 * (i + 1) as f64);
+            answers.push(Row { session_id, pair_id, left_condition, chose_left, rt_ms });
         }
     }
-    all
+    answers
+}
+
+/// Participant i chooses the target of pair a when bit 0 of i is set, of b bit 1, of c bit 2.
+fn by_bits(i: usize, k: usize) -> &'static str {
+    if i >> k & 1 == 1 { "pa" } else { PAIRS[k].1 }
 }
 
 #[test]
 fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
-    let ids = ids();
-    let report = Report::of(&study(), &observations(&ids));
+    let report = Report::of(&study(), &answers(16, by_bits).participants());
     assert_eq!(report.blocks.iter().map(|b| b.summary.id.as_str()).collect::<Vec<_>>(), ["stills", "photos"]);
     let stills = &report.blocks[0];
     // Sixteen participants over all combinations: 4, 8 and 4 choose the target 0, 1 and 2 times; the mean is the null's.
@@ -100,16 +103,9 @@ fn an_empty_study_gives_a_report_that_says_so() {
 
 #[test]
 fn degenerate_answers_are_notes_and_no_panic() {
-    let ids = ids();
     for (people, choice) in [(1, "pa"), (2, "pa"), (16, "pa"), (16, "mc")] {
-        let all: Vec<_> = observations(&ids[..people])
-            .into_iter()
-            .map(|mut o| {
-                o.answer.chosen_condition = if o.answer.block_id == "photos" { "photo" } else { choice };
-                o
-            })
-            .collect();
-        let report = Report::of(&study(), &all);
+        let same = answers(people, |_, k| if k == 2 { "photo" } else { choice });
+        let report = Report::of(&study(), &same.participants());
         assert!(
             report.blocks.iter().all(|b| b.summary.t.is_none() && !b.analysis.notes.is_empty()),
             "{people} {choice}"

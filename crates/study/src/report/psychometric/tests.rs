@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used)]
 
-use crate::analysis::Answer;
+use crate::answers::{Answers, Row};
 use crate::definition::StudyDefinition;
-use crate::report::{Observation, PsychometricReport, Report};
+use crate::report::{PsychometricReport, Report};
 use kelir_stats::random::Random;
 
 /// A block of seven or fewer levels whose psychometric function is described by `function`.
@@ -30,17 +30,16 @@ fn report(
     participants: usize,
     mut target: impl FnMut(usize, usize) -> bool,
 ) -> PsychometricReport {
-    let ids: Vec<String> = (0..participants).map(|i| format!("s{i:04}")).collect();
     let block = &study.blocks[0];
-    let mut seen = Vec::new();
-    for (i, session_id) in ids.iter().enumerate() {
+    let mut answers = Answers::new(study);
+    for i in 0..participants {
+        let session_id = &format!("s{i:04}");
         for (k, pair) in block.pairs.iter().enumerate() {
-            let chosen_condition = if target(i, k) { block.target.as_str() } else { block.other() };
-            let answer = Answer { session_id, block_id: &block.id, pair_id: &pair.id, chosen_condition };
-            seen.push(Observation { answer, chose_left: i % 2 == 0, rt_ms: 500.0 });
+            let (chose_left, left_condition) = (target(i, k), block.target.as_str());
+            answers.push(Row { session_id, pair_id: &pair.id, left_condition, chose_left, rt_ms: 500.0 });
         }
     }
-    Report::of(study, &seen).blocks[0].psychometric.clone().unwrap()
+    Report::of(study, &answers.participants()).blocks[0].psychometric.clone().unwrap()
 }
 
 #[test]

@@ -1,0 +1,342 @@
+//! `kelir bench rows`: how long judging many answers takes, from the database's first row to the researcher's page.
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use kelir_render::file;
+use kelir_server::{Library, Made, Maker, Server, ServerConfig, Task, results};
+use kelir_stats::pairwise::Model;
+use kelir_stats::random::Random;
+use kelir_store::{ImportedSession, NewResponse, PlannedSession, PlannedTrial, Store, StoredAnswers};
+use kelir_study::analysis::{conditions_scale, summarise};
+use kelir_study::answers::Participant;
+use kelir_study::screening::screen;
+use kelir_study::{StudyDefinition, TrialPlan};
+use serde::Serialize;
+
+use crate::output::{print, table};
+use crate::{bad_input, progress};
+
+/// Arguments of `kelir bench rows`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Answers; rounded up to whole participants of thirty.
+    #[arg(long, default_value_t = 1_000_000)]
+    rows: u64,
+    /// Also write the figures as JSON.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+const CONDITIONS: usize = 6;
+const PAIRS_A_BLOCK: usize = 2;
+/// Sessions stored in one transaction.
+const BATCH: u32 = 500;
+const PASSWORD: &str = "a password for a benchmark";
+
+/// Seconds that each step took.
+#[derive(Serialize)]
+struct Report {
+    rows: u64,
+    participants: u64,
+    conditions: usize,
+    blocks: usize,
+    excluded: usize,
+    threads: usize,
+    write_s: f64,
+    cold_read_s: f64,
+    screening_s: f64,
+    t_tests_s: f64,
+    scaling_s: f64,
+    cold_total_s: f64,
+    warm_read_s: f64,
+    warm_total_s: f64,
+    command_s: f64,
+    http_first_s: f64,
+    http_next_s: f64,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let trials = (CONDITIONS * (CONDITIONS - 1) / 2 * PAIRS_A_BLOCK) as u64;
+    if !(1..=100_000_000).contains(&args.rows) {
+        return Err(bad_input(format!("rows = {}: must lie between 1 and 100,000,000", args.rows)));
+    }
+    let people = u32::try_from(args.rows.div_ceil(trials))?;
+    let folder = tempfile::tempdir()?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
+    let report = runtime.block_on(measure(folder.path(), people))?;
+    print(&format!(
+        "{} answers of {} participants to {} blocks over {} conditions, {} of them excluded by rules; {} threads\n",
+        report.rows, report.participants, report.blocks, report.conditions, report.excluded, report.threads
+    ))?;
+    let seconds = |x: f64| format!("{x:.3}");
+    let row = |what: &str, s: f64| vec![what.to_owned(), seconds(s)];
+    print(&table(
+        &["step", "seconds"],
+        &[
+            row("write them (chain of hashes, payloads)", report.write_s),
+            row("read all from the database", report.cold_read_s),
+            row("screen every participant", report.screening_s),
+            row("the paper's t-test of every block", report.t_tests_s),
+            row("scale the conditions", report.scaling_s),
+            row("all of it, nothing read before", report.cold_total_s),
+            row("read one answer more", report.warm_read_s),
+            row("all of it, one answer more", report.warm_total_s),
+            row("kelir stats, without printing", report.command_s),
+            row("GET results, first after the start", report.http_first_s),
+            row("GET results, one answer more", report.http_next_s),
+        ],
+    ))?;
+    match &args.json {
+        Some(path) => {
+            file::write_atomic(path, serde_json::to_string_pretty(&report)?.as_bytes()).map_err(bad_input)
+        }
+        None => Ok(()),
+    }
+}
+
+async fn measure(data: &Path, people: u32) -> Result<Report> {
+    std::fs::create_dir_all(data.join("studies"))?;
+    std::fs::write(data.join("studies/rows.toml"), study_file())?;
+    let study = Library::new(data).study("studies/rows.toml")?;
+    let store = Store::open(data).await?;
+    store.put_study(&study).await?;
+    let begun = Instant::now();
+    fill(&store, &study, people).await?;
+    let write_s = begun.elapsed().as_secs_f64();
+
+    let mut stored = StoredAnswers::new(&study);
+    let cold = judged(&store, &study, &mut stored).await?;
+    let rows = u64::from(people) * study.trial_count() as u64;
+    if cold.answers as u64 != rows {
+        bail!("{} answers were read of {rows}", cold.answers);
+    }
+    one_more(&store, &study).await?;
+    let warm = judged(&store, &study, &mut stored).await?;
+    store.close().await;
+
+    let begun = Instant::now();
+    results::of_study(data, &study.id).await?;
+    let command_s = begun.elapsed().as_secs_f64();
+    let (http_first_s, http_next_s) = over_http(data, &study).await?;
+    Ok(Report {
+        rows,
+        participants: u64::from(people),
+        conditions: study.conditions.len(),
+        blocks: study.blocks.len(),
+        excluded: cold.excluded,
+        threads: std::thread::available_parallelism().map_or(1, usize::from),
+        write_s,
+        cold_read_s: cold.read_s,
+        screening_s: cold.screening_s,
+        t_tests_s: cold.t_tests_s,
+        scaling_s: cold.scaling_s,
+        cold_total_s: cold.total_s,
+        warm_read_s: warm.read_s,
+        warm_total_s: warm.total_s,
+        command_s,
+        http_first_s,
+        http_next_s,
+    })
+}
+
+/// One round of judging.
+struct Judged {
+    answers: usize,
+    excluded: usize,
+    read_s: f64,
+    screening_s: f64,
+    t_tests_s: f64,
+    scaling_s: f64,
+    total_s: f64,
+}
+
+async fn judged(store: &Store, study: &StudyDefinition, stored: &mut StoredAnswers) -> Result<Judged> {
+    let begun = Instant::now();
+    store.read_on(stored).await?;
+    let read_s = begun.elapsed().as_secs_f64();
+    let answers = stored.answers();
+    let step = Instant::now();
+    let everybody = answers.participants();
+    let kept: Vec<&Participant> = everybody.iter().copied().filter(|p| screen(study, p).is_empty()).collect();
+    let screening_s = step.elapsed().as_secs_f64();
+    let step = Instant::now();
+    let blocks = summarise(study, &kept);
+    let t_tests_s = step.elapsed().as_secs_f64();
+    let step = Instant::now();
+    let scale = conditions_scale(study, &kept);
+    let scaling_s = step.elapsed().as_secs_f64();
+    let total_s = begun.elapsed().as_secs_f64();
+    if blocks.iter().any(|block| block.n == 0) {
+        bail!("a block has no participants");
+    }
+    scale.map_err(anyhow::Error::msg)?;
+    let excluded = everybody.len() - kept.len();
+    Ok(Judged { answers: answers.len(), excluded, read_s, screening_s, t_tests_s, scaling_s, total_s })
+}
+
+/// Six conditions, each pair of them a block of two pairs of pictures.
+fn study_file() -> String {
+    let mut text = "title = \"Rows\"\nquestion = \"Which?\"\nseed = 1\nsize = [592, 333]\nestimated_minutes = 9\n\
+         texts = { welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }\n\
+         screening = { min_rt_ms = 200, max_fast_trials = 2, straight_lining = true, incomplete = true }\n"
+        .to_owned();
+    for i in 0..CONDITIONS {
+        text += &format!("[conditions.spp-{i}]\ntechnique = \"mc\"\nspp = {}\n", 1 << i);
+    }
+    for (i, j) in comparisons() {
+        let pairs: Vec<String> = (0..PAIRS_A_BLOCK)
+            .map(|k| format!("{{ id = \"pair-{i}-{j}-{k}\", scene = \"../scenes/arjuna-near.toml\" }}"))
+            .collect();
+        text += &format!(
+            "[[blocks]]\nid = \"block-{i}-{j}\"\ntitle = \"{i} and {j}\"\nkind = \"still\"\n\
+             conditions = [\"spp-{i}\", \"spp-{j}\"]\ntarget = \"spp-{i}\"\npairs = [{}]\n",
+            pairs.join(", ")
+        );
+    }
+    text
+}
+
+fn comparisons() -> impl Iterator<Item = (usize, usize)> {
+    (0..CONDITIONS).flat_map(|i| (i + 1..CONDITIONS).map(move |j| (i, j)))
+}
+
+/// Simulated participants, a fifth of a JOD between neighbouring conditions, through the store's own rows and chain.
+async fn fill(store: &Store, study: &StudyDefinition, people: u32) -> Result<()> {
+    let sha256 = store.put_stimulus("image/png", b"one picture for all".to_vec()).await?;
+    let config_hash = study.config_hash();
+    let bar = progress::bar(u64::from(people), "participants");
+    let mut next = 0;
+    while next < people {
+        let until = people.min(next + BATCH);
+        let simulated = |slot: u32| ImportedSession {
+            study_id: study.id.clone(),
+            config_hash: config_hash.clone(),
+            slot,
+            ..simulate(study, slot, &sha256)
+        };
+        store.import_sessions((next..until).map(simulated).collect()).await?;
+        next = until;
+        bar.set_position(u64::from(next));
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
+
+fn simulate(study: &StudyDefinition, slot: u32, sha256: &str) -> ImportedSession {
+    let mut random = Random::stream(study.seed, u64::from(slot));
+    let plan = TrialPlan::for_slot(study, slot);
+    let quality = |name: &str| name.trim_start_matches("spp-").parse::<f64>().unwrap_or_default() * 0.2;
+    let answers = plan
+        .trials
+        .iter()
+        .map(|trial| {
+            let p = Model::default().probability(quality(&trial.left) - quality(&trial.right));
+            let rt_ms = (7.0 + 0.6 * random.normal()).exp();
+            NewResponse {
+                trial_index: trial.trial_index,
+                chose_left: random.bernoulli(p),
+                rt_ms,
+                payload: format!("{{\"rt\":{rt_ms}}}"),
+            }
+        })
+        .collect();
+    let filled =
+        |trial| PlannedTrial { trial, left_sha256: sha256.to_owned(), right_sha256: sha256.to_owned() };
+    let planned = PlannedSession { seed: plan.seed, trials: plan.trials.into_iter().map(filled).collect() };
+    ImportedSession {
+        study_id: String::new(),
+        config_hash: String::new(),
+        slot,
+        planned,
+        answers,
+        completion_code: Some("DONE".to_owned()),
+    }
+}
+
+/// A newcomer who has answered one trial.
+async fn one_more(store: &Store, study: &StudyDefinition) -> Result<()> {
+    let sha256 = store.put_stimulus("image/png", b"one picture for all".to_vec()).await?;
+    let mut session = simulate(study, 1_000_000_000, &sha256);
+    session.answers.truncate(1);
+    session.completion_code = None;
+    session.study_id = study.id.clone();
+    session.config_hash = study.config_hash();
+    Ok(store.import_sessions(vec![session]).await?)
+}
+
+/// Refuses to draw: no picture is looked at here.
+struct Nobody;
+
+impl Maker for Nobody {
+    fn identity(&self, _: &Task<'_>, _: &Library) -> Result<String, String> {
+        Err("nothing is drawn in a benchmark of answers".to_owned())
+    }
+
+    fn make(&self, _: &Task<'_>, _: &Library, _: &mut dyn FnMut(f64, &str)) -> Result<Made, String> {
+        Err("nothing is drawn in a benchmark of answers".to_owned())
+    }
+}
+
+/// Seconds of the first request for results after the server's start, and of the next, before which one answer came.
+async fn over_http(data: &Path, study: &StudyDefinition) -> Result<(f64, f64)> {
+    let server = Server::start(ServerConfig {
+        data: data.to_owned(),
+        listen: SocketAddr::from(([127, 0, 0, 1], 0)),
+        password: Some(PASSWORD.to_owned()),
+        secure_cookies: false,
+        maker: Arc::new(Nobody),
+        progress: Arc::new(|_| {}),
+    })
+    .await?;
+    // It fails, as it should.
+    let _ = server.ready().await;
+    let address = server.address();
+    let body = serde_json::json!({ "password": PASSWORD }).to_string();
+    let signed_in = request(address, "POST", "/api/v1/login", "", body).await?;
+    let cookie = signed_in
+        .lines()
+        .find_map(|line| line.strip_prefix("set-cookie: ")?.split(';').next())
+        .context("the server gave no cookie")?
+        .to_owned();
+    let path = format!("/api/v1/admin/studies/{}/results", study.id);
+    let mut seconds = [0.0; 2];
+    for took in &mut seconds {
+        let begun = Instant::now();
+        let answer = request(address, "GET", &path, &cookie, String::new()).await?;
+        *took = begun.elapsed().as_secs_f64();
+        if !answer.starts_with("HTTP/1.1 200") || !answer.contains("\"jod\"") {
+            bail!("GET {path}: {}", answer.lines().next().unwrap_or_default());
+        }
+        one_more(server.server().store(), study).await?;
+    }
+    server.shutdown().await;
+    Ok((seconds[0], seconds[1]))
+}
+
+async fn request(
+    address: SocketAddr,
+    method: &str,
+    path: &str,
+    cookie: &str,
+    body: String,
+) -> Result<String> {
+    let text = format!(
+        "{method} {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Type: application/json\r\n\
+         Cookie: {cookie}\r\nContent-Length: {}\r\n\r\n{body}",
+        body.len()
+    );
+    tokio::task::spawn_blocking(move || {
+        let mut stream = TcpStream::connect(address)?;
+        stream.write_all(text.as_bytes())?;
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer)?;
+        Ok(answer)
+    })
+    .await?
+}

@@ -1,0 +1,200 @@
+//! Simulated people who take a study.
+
+use super::design::{Design, Supposed, Truth};
+use crate::answers::{Answers, Row, blocks};
+use crate::definition::GUESS;
+use crate::plan::TrialPlan;
+use kelir_stats::pairwise::Model;
+use kelir_stats::psychometric::Curve;
+use kelir_stats::random::Random;
+
+/// Standard deviation of the logarithm of response times.
+const RT_SPREAD: f64 = 0.4;
+
+/// Everybody who could take part in any simulated study.
+pub(super) struct Crowd<'a> {
+    pub(super) design: &'a Design,
+    /// The plan of each slot.
+    plans: Vec<TrialPlan>,
+    /// For each pair of the study, by its place: its block's truth, and its level.
+    pairs: Vec<(Option<&'a Supposed>, Option<f64>)>,
+    /// How many `[[truth]]` there are.
+    entries: usize,
+}
+
+/// One observer's own deviation from a truth.
+#[derive(Default)]
+struct Own {
+    /// Probability, or threshold.
+    value: f64,
+    /// Quality of each of the study's conditions.
+    qualities: Vec<f64>,
+}
+
+/// The number of a simulated participant.
+pub(super) fn index(session_id: &str) -> u32 {
+    session_id.parse().unwrap_or(u32::MAX)
+}
+
+impl<'a> Crowd<'a> {
+    pub(super) fn new(design: &'a Design) -> Crowd<'a> {
+        let study = &design.study;
+        let most = design.participants.last().copied().unwrap_or(0);
+        let pairs: Vec<_> = blocks(study)
+            .zip(&design.truths)
+            .flat_map(|((block, _), truth)| block.pairs.iter().map(move |pair| (truth.as_ref(), pair.level)))
+            .collect();
+        let entries = design.truths.iter().flatten().map(|t| t.entry + 1).max().unwrap_or(0);
+        Crowd {
+            design,
+            plans: (0..most).map(|slot| TrialPlan::for_slot(study, slot)).collect(),
+            pairs,
+            entries,
+        }
+    }
+
+    /// The answers of one simulated study with the most participants; those of a smaller one are the first of them. One after the other
+    /// they take the lowest slot that nobody completed, as newcomers do.
+    pub(super) fn take(&self, run: u64) -> Answers {
+        let study = &self.design.study;
+        let mut answers = Answers::new(study);
+        let seed = Random::stream(self.design.seed, run).next_u64();
+        let mut slot = 0;
+        for person in 0..self.plans.len() {
+            let mut random = Random::stream(seed, person as u64);
+            let finished = self.answer(&mut random, &format!("{person:06}"), &self.plans[slot], &mut answers);
+            slot += usize::from(finished);
+        }
+        answers
+    }
+
+    /// One person's answers to a plan; whether they finished.
+    fn answer(&self, random: &mut Random, session_id: &str, plan: &TrialPlan, answers: &mut Answers) -> bool {
+        let people = &self.design.observers;
+        let careless = random.bernoulli(people.careless);
+        let stays = !random.bernoulli(people.dropout);
+        let last = random.below(plan.trials.len());
+        let own = self.own(random);
+        let median = if careless { people.careless_rt_ms } else { people.rt_median_ms };
+        let answered = if stays { plan.trials.len() } else { last };
+        let mut first = 0;
+        let mut block = 0;
+        for trial in &plan.trials[..answered] {
+            // Blocks come in order: each one's first pair lies behind all pairs of those before.
+            while block < trial.block_index {
+                first += self.design.study.blocks[block as usize].pairs.len();
+                block += 1;
+            }
+            let (supposed, level) = self.pairs[first + trial.pair_index as usize];
+            let chance = match supposed {
+                _ if careless => 0.5,
+                None => 1.0 - people.catch_errors,
+                Some(supposed) => {
+                    let chance = self.chance(supposed, block as usize, level, &own[supposed.entry]);
+                    (1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse
+                }
+            };
+            let chose_target = random.bernoulli(chance);
+            let rt_ms = median * (RT_SPREAD * random.normal()).exp();
+            let chose_left = chose_target == trial.target_left;
+            let row =
+                Row { session_id, pair_id: &trial.pair_id, left_condition: &trial.left, chose_left, rt_ms };
+            answers.push(row);
+        }
+        stays
+    }
+
+    /// What is this observer's own, by entry of the design.
+    fn own(&self, random: &mut Random) -> Vec<Own> {
+        let mut own: Vec<Own> = (0..self.entries).map(|_| Own::default()).collect();
+        let mut known = vec![false; self.entries];
+        for supposed in self.design.truths.iter().flatten() {
+            if std::mem::replace(&mut known[supposed.entry], true) {
+                continue;
+            }
+            own[supposed.entry] = match &supposed.truth {
+                Truth::Preference { probability, icc } => {
+                    Own { value: random.beta(*probability, *icc), ..Own::default() }
+                }
+                Truth::Quality { jod, observer_sd } => Own {
+                    qualities: self
+                        .design
+                        .study
+                        .conditions
+                        .keys()
+                        .map(|name| jod.get(name).copied().unwrap_or(0.0) + observer_sd * random.normal())
+                        .collect(),
+                    ..Own::default()
+                },
+                Truth::Threshold { threshold, threshold_sd, .. } => {
+                    Own { value: threshold + threshold_sd * random.normal(), ..Own::default() }
+                }
+            };
+        }
+        own
+    }
+
+    /// An observer's probability of choosing the target, without lapses.
+    fn chance(&self, supposed: &Supposed, block: usize, level: Option<f64>, own: &Own) -> f64 {
+        let block = &self.design.study.blocks[block];
+        match &supposed.truth {
+            Truth::Preference { .. } => own.value,
+            Truth::Quality { .. } => {
+                let place = |name: &str| self.design.study.conditions.keys().position(|known| known == name);
+                let quality = |name| place(name).map_or(0.0, |place| own.qualities[place]);
+                Model::Thurstone.probability(quality(&block.target) - quality(block.other()))
+            }
+            Truth::Threshold { width, .. } => {
+                let Some((asked, level)) = block.psychometric.as_ref().zip(level) else { return GUESS };
+                let sign = asked.direction.sign();
+                let curve = Curve {
+                    sigmoid: asked.function,
+                    threshold: sign * own.value,
+                    width: *width,
+                    guess: GUESS,
+                    lapse: 0.0,
+                    eta: 0.0,
+                };
+                curve.proportion(sign * level)
+            }
+        }
+    }
+}
+
+/// Probability of choosing the target over all observers, lapses included, at a pair's level; by a sum over observers' normal
+/// deviations where there is no closed form.
+pub(super) fn mean_chance(design: &Design, block: usize, level: Option<f64>) -> Option<f64> {
+    let supposed = design.truths.get(block)?.as_ref()?;
+    let of_study = &design.study.blocks[block];
+    let chance = match &supposed.truth {
+        Truth::Preference { probability, .. } => *probability,
+        Truth::Quality { jod, observer_sd } => {
+            // Two normal deviations widen the noise of the choice itself, whose standard deviation one JOD measures in quartiles.
+            let noise = Model::Thurstone.jod();
+            let shrink = noise / (noise * noise + 2.0 * observer_sd * observer_sd).sqrt();
+            let difference = jod.get(&of_study.target)? - jod.get(of_study.other())?;
+            Model::Thurstone.probability(difference * shrink)
+        }
+        Truth::Threshold { threshold, width, threshold_sd } => {
+            let asked = of_study.psychometric.as_ref()?;
+            let sign = asked.direction.sign();
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for step in -60..=60 {
+                let z = f64::from(step) / 10.0;
+                let weight = (-0.5 * z * z).exp();
+                let curve = Curve {
+                    sigmoid: asked.function,
+                    threshold: sign * (threshold + threshold_sd * z),
+                    width: *width,
+                    guess: GUESS,
+                    lapse: 0.0,
+                    eta: 0.0,
+                };
+                sum += weight * curve.proportion(sign * level?);
+                weights += weight;
+            }
+            sum / weights
+        }
+    };
+    Some((1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse)
+}

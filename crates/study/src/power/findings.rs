@@ -1,0 +1,193 @@
+//! What a report claims, and what is true.
+
+use super::crowd::mean_chance;
+use super::design::{Design, Truth};
+use crate::answers::blocks;
+use crate::report::{ChoiceAnalysis, Report};
+use kelir_stats::inference::Bounds;
+use kelir_stats::pairwise::{ScaleOptions, Wins, scale};
+
+/// Everything that a report of the design's study may claim, in an order that every report keeps.
+pub(super) struct Claims {
+    pub(super) tests: Vec<TestClaim>,
+    pub(super) intervals: Vec<IntervalClaim>,
+    blocks: usize,
+    differences: usize,
+}
+
+/// One test.
+pub(super) struct TestClaim {
+    pub(super) of: String,
+    pub(super) test: &'static str,
+    pub(super) null: bool,
+}
+
+/// One interval.
+pub(super) struct IntervalClaim {
+    pub(super) of: String,
+    pub(super) interval: &'static str,
+    pub(super) truth: Option<f64>,
+}
+
+/// What one report claims, in the order of [`Claims`].
+pub(super) struct Outcome {
+    /// Whether each test is significant; `None`: not defined.
+    pub(super) tests: Vec<Option<bool>>,
+    /// Each interval.
+    pub(super) intervals: Vec<Option<[f64; 2]>>,
+}
+
+/// The p-value of a test; `None` where it is not defined.
+type PValue = fn(&ChoiceAnalysis) -> Option<f64>;
+
+/// A block's tests. Those of equivalence ask for the opposite of the others.
+const TESTS: [(&str, PValue); 8] = [
+    ("t-test of participants' counts (the paper's)", |a| a.t_test.p),
+    ("sign test of the counts", |a| a.sign.as_ref().map(|t| t.p)),
+    ("Wilcoxon test of the counts", |a| a.wilcoxon.as_ref().map(|t| t.p)),
+    ("cluster-robust logit", |a| a.robust_logit.as_ref().map(|l| l.coefficients[0].p)),
+    ("random-intercept logit", |a| a.mixed_logit.as_ref().map(|l| l.coefficients[0].p)),
+    (PER_TRIAL, |a| a.binomial.as_ref().map(|t| t.p)),
+    ("equivalence within ±0.5 choices", |a| equivalence(a, Bounds::Points(0.5))),
+    ("equivalence within ±0.5 SD", |a| equivalence(a, Bounds::Sd(0.5))),
+];
+
+/// The test that no clustered data should be judged by.
+pub(super) const PER_TRIAL: &str = "binomial test of single choices (ignores who made them)";
+const HOLM: &str = "t-test, Holm over blocks";
+const SCALE: &str = "difference on the scale";
+
+fn equivalence(analysis: &ChoiceAnalysis, bounds: Bounds) -> Option<f64> {
+    analysis.equivalence.iter().find(|e| e.bounds == bounds).map(|e| e.p)
+}
+
+impl Claims {
+    pub(super) fn new(design: &Design) -> Claims {
+        let (mut tests, mut intervals) = (Vec::new(), Vec::new());
+        let analysed: Vec<usize> =
+            (0..design.study.blocks.len()).filter(|&b| !design.study.blocks[b].catch).collect();
+        for &b in &analysed {
+            let block = &design.study.blocks[b];
+            let chances: Option<Vec<f64>> =
+                block.pairs.iter().map(|pair| mean_chance(design, b, pair.level)).collect();
+            let share = chances.map(|chances| chances.iter().sum::<f64>() / chances.len() as f64);
+            let chance = share == Some(0.5);
+            let of = || block.id.clone();
+            for (test, _) in TESTS {
+                // What is equal is equivalent: there those tests have power.
+                let null =
+                    if test.starts_with("equivalence") { !equivalent(design, b, test) } else { chance };
+                tests.push(TestClaim { of: of(), test, null });
+            }
+            tests.push(TestClaim { of: of(), test: HOLM, null: chance });
+            let threshold = match design.truths[b].as_ref().map(|t| &t.truth) {
+                Some(Truth::Threshold { threshold, .. }) => Some(*threshold),
+                _ => None,
+            };
+            for (interval, truth) in [
+                ("share of target choices, participants resampled", share),
+                ("share of target choices, Wilson's (ignores who made them)", share),
+                ("threshold, posterior", threshold),
+                ("threshold, participants resampled", threshold),
+            ] {
+                if !interval.starts_with("threshold") || block.psychometric.is_some() {
+                    intervals.push(IntervalClaim { of: of(), interval, truth });
+                }
+            }
+        }
+        let differences = true_differences(design);
+        for (a, b, truth) in &differences {
+            let of = format!("{a} − {b}");
+            tests.push(TestClaim {
+                of: of.clone(),
+                test: SCALE,
+                null: truth.is_some_and(|d| d.abs() < 1e-6),
+            });
+            intervals.push(IntervalClaim {
+                of,
+                interval: "difference in JOD, participants resampled",
+                truth: *truth,
+            });
+        }
+        Claims { tests, intervals, blocks: analysed.len(), differences: differences.len() }
+    }
+
+    /// What a report claims at the level `alpha`.
+    pub(super) fn check(&self, report: &Report, alpha: f64) -> Outcome {
+        let (mut tests, mut intervals) = (Vec::new(), Vec::new());
+        debug_assert_eq!(report.blocks.len(), self.blocks);
+        for block in &report.blocks {
+            let analysis = &block.analysis;
+            tests.extend(TESTS.iter().map(|(_, p)| p(analysis).map(|p| p < alpha)));
+            tests.push(block.p_holm.map(|p| p < alpha));
+            let proportion = analysis.proportion.as_ref();
+            let resampled = proportion.and_then(|p| p.by_participant.as_ref());
+            intervals.push(resampled.map(|b| [b.low, b.high]));
+            intervals.push(proportion.map(|p| [p.wilson.low, p.wilson.high]));
+            if let Some(psychometric) = &block.psychometric {
+                let fit = psychometric.fit.as_ref();
+                intervals.push(fit.map(|f| [f.threshold.low, f.threshold.high]));
+                let resampled = fit.and_then(|f| f.threshold_by_participant.as_ref());
+                intervals.push(resampled.map(|b| [b.low, b.high]));
+            }
+        }
+        for i in 0..self.differences {
+            let found = report.scale.as_ref().and_then(|scale| scale.differences.get(i));
+            tests.push(found.map(|d| d.p < alpha));
+            intervals.push(found.map(|d| [d.low, d.high]));
+        }
+        Outcome { tests, intervals }
+    }
+}
+
+/// Whether the mean number of target choices lies within the bounds of an equivalence test. Bounds in standard deviations are taken as
+/// met exactly where there is no preference.
+fn equivalent(design: &Design, block: usize, test: &str) -> bool {
+    let of_study = &design.study.blocks[block];
+    let chances: Option<Vec<f64>> =
+        of_study.pairs.iter().map(|p| mean_chance(design, block, p.level)).collect();
+    let Some(chances) = chances else { return false };
+    let distance = (chances.iter().sum::<f64>() - of_study.mu()).abs();
+    if test.ends_with("choices") { distance < 0.5 } else { distance < 1e-12 }
+}
+
+/// The differences of all conditions on the scale that endless answers would give, in the order of a report's; none without a scale.
+fn true_differences(design: &Design) -> Vec<(String, String, Option<f64>)> {
+    // Endless: shares are then known to nine digits.
+    const ENDLESS: f64 = 1e9;
+    let study = &design.study;
+    let compared = || blocks(study).enumerate().filter(|(_, (block, _))| !block.catch);
+    let mut names: Vec<String> =
+        compared().flat_map(|(_, (block, _))| block.conditions.iter().cloned()).collect();
+    names.sort();
+    names.dedup();
+    if names.len() < 3 {
+        return Vec::new();
+    }
+    let wins = || {
+        let mut wins = Wins::new(names.len());
+        for (b, (block, _)) in compared() {
+            let place = |name: &str| names.iter().position(|known| known == name);
+            let (target, other) = (place(&block.target)?, place(block.other())?);
+            for pair in &block.pairs {
+                let chance = mean_chance(design, b, pair.level)?;
+                if !(1e-6..=1.0 - 1e-6).contains(&chance) {
+                    return None;
+                }
+                let hits = (ENDLESS * chance).round();
+                wins.add(target, other, hits as u64).ok()?;
+                wins.add(other, target, (ENDLESS - hits) as u64).ok()?;
+            }
+        }
+        scale(&names, &wins, ScaleOptions::default()).ok()
+    };
+    let jod = wins().map(|scale| scale.jod);
+    let mut differences = Vec::new();
+    for a in 0..names.len() {
+        for b in a + 1..names.len() {
+            let truth = jod.as_ref().map(|jod| jod[a] - jod[b]);
+            differences.push((names[a].clone(), names[b].clone(), truth));
+        }
+    }
+    differences
+}

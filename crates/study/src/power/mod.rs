@@ -1,0 +1,293 @@
+//! How many participants a study needs: simulated observers take the study itself (its plans, sides, catch trials, screening), and the
+//! report that judges real answers judges theirs.
+
+mod crowd;
+mod design;
+mod findings;
+#[cfg(test)]
+mod tests;
+
+pub use design::{Design, DesignFile, Observers, Supposed, Truth};
+pub use kelir_stats::simulate::Rate;
+
+use crate::answers::Participant;
+use crate::report::{LEVEL, REPLICATES, Report};
+use crate::screening::screen;
+use crowd::Crowd;
+use findings::{Claims, Outcome};
+use serde::Serialize;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What simulated studies of several sizes found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Power {
+    /// Study's id.
+    pub study: String,
+    /// Version of the study.
+    pub config_hash: String,
+    /// Simulated studies of each size.
+    pub simulations: u64,
+    /// Seed that repeats them.
+    pub seed: u64,
+    /// Level of the tests.
+    pub alpha: f64,
+    /// The power that is wanted.
+    pub power: f64,
+    /// Level of the intervals.
+    pub level: f64,
+    /// Resamples of each bootstrap.
+    pub replicates: usize,
+    /// By number of participants, rising.
+    pub sizes: Vec<Size>,
+    /// For each test that asks for something that is there: the fewest participants, of those tried, with which it is found often enough.
+    pub needed: Vec<Needed>,
+}
+
+/// Simulated studies of one size.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Size {
+    /// Participants who began.
+    pub participants: u32,
+    /// Mean share of them that the study's rules exclude, drop-outs included where they do.
+    pub excluded: f64,
+    /// The report's tests.
+    pub tests: Vec<TestRate>,
+    /// The report's intervals.
+    pub intervals: Vec<IntervalRate>,
+}
+
+/// How often a test says yes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TestRate {
+    /// Block's id, or two conditions.
+    pub of: String,
+    /// Which test.
+    pub test: &'static str,
+    /// Whether the test's null hypothesis is true, so that the rate is of false alarms.
+    pub null: bool,
+    /// How often it is significant at the level `alpha`; where it is not defined it finds nothing.
+    pub rate: Rate,
+}
+
+/// How often an interval holds what is true.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct IntervalRate {
+    /// Block's id, or two conditions.
+    pub of: String,
+    /// Which interval.
+    pub interval: &'static str,
+    /// The true value; null where it is not defined (then nothing is covered).
+    pub truth: Option<f64>,
+    /// How often the interval holds it.
+    pub coverage: Rate,
+    /// Its mean width, in the value's unit; null without intervals.
+    pub width: Option<f64>,
+}
+
+/// The fewest participants for a wanted power.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Needed {
+    /// Block's id, or two conditions.
+    pub of: String,
+    /// Which test.
+    pub test: &'static str,
+    /// The fewest of those tried; null: more than any.
+    pub participants: Option<u32>,
+    /// The test's rate there, or at the most that were tried.
+    pub rate: Rate,
+}
+
+/// Simulated studies whose sums are kept apart, so that the result does not depend on which thread did what.
+const BATCH: u64 = 8;
+
+/// Simulates the design on every core. `progress` is told how many of `simulations` are done, from any thread.
+pub fn power(design: &Design, progress: &(dyn Fn(u64) + Sync)) -> Power {
+    let crowd = Crowd::new(design);
+    let claims = Claims::new(design);
+    let batches = design.simulations.div_ceil(BATCH);
+    let (next, done) = (AtomicU64::new(0), AtomicU64::new(0));
+    let work = || {
+        let mut sums = Vec::new();
+        loop {
+            let batch = next.fetch_add(1, Ordering::Relaxed);
+            if batch >= batches {
+                return sums;
+            }
+            let mut sum = Sums::new(design, &claims);
+            for run in batch * BATCH..design.simulations.min((batch + 1) * BATCH) {
+                sum.add(&crowd, &claims, run);
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+            }
+            sums.push((batch, sum));
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut sums = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let mut sums = work();
+        // A thread that fails has no sums: their studies are missing from every rate's `runs`.
+        sums.extend(others.into_iter().filter_map(|thread| thread.join().ok()).flatten());
+        sums
+    });
+    sums.sort_by_key(|(batch, _)| *batch);
+    let mut total = Sums::new(design, &claims);
+    for (_, sum) in &sums {
+        total.merge(sum);
+    }
+    total.power(design, &claims)
+}
+
+/// Sums over simulated studies, by size.
+struct Sums {
+    sizes: Vec<SizeSums>,
+}
+
+struct SizeSums {
+    excluded: u64,
+    runs: u64,
+    tests: Vec<Tally>,
+    intervals: Vec<Tally>,
+    widths: Vec<(f64, u64)>,
+}
+
+/// Yes, defined, undefined.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    hits: u64,
+    runs: u64,
+    undefined: u64,
+}
+
+impl Tally {
+    fn add(&mut self, found: Option<bool>) {
+        match found {
+            Some(found) => {
+                self.runs += 1;
+                self.hits += u64::from(found);
+            }
+            None => self.undefined += 1,
+        }
+    }
+
+    fn merge(&mut self, other: &Tally) {
+        self.hits += other.hits;
+        self.runs += other.runs;
+        self.undefined += other.undefined;
+    }
+
+    fn rate(&self) -> Rate {
+        Rate::new(self.hits, self.runs, self.undefined)
+    }
+}
+
+impl Sums {
+    fn new(design: &Design, claims: &Claims) -> Sums {
+        let size = || SizeSums {
+            excluded: 0,
+            runs: 0,
+            tests: vec![Tally::default(); claims.tests.len()],
+            intervals: vec![Tally::default(); claims.intervals.len()],
+            widths: vec![(0.0, 0); claims.intervals.len()],
+        };
+        Sums { sizes: design.participants.iter().map(|_| size()).collect() }
+    }
+
+    /// One simulated study of each size; a larger one is a smaller one and more people.
+    fn add(&mut self, crowd: &Crowd<'_>, claims: &Claims, run: u64) {
+        let answers = crowd.take(run);
+        let everybody = answers.participants();
+        for (sums, &size) in self.sizes.iter_mut().zip(&crowd.design.participants) {
+            let of_size = everybody.iter().copied().filter(|p| crowd::index(&p.session_id) < size);
+            let (kept, excluded): (Vec<&Participant>, Vec<&Participant>) =
+                of_size.partition(|p| screen(&crowd.design.study, p).is_empty());
+            let report = Report::of(&crowd.design.study, &kept);
+            let Outcome { tests, intervals } = claims.check(&report, crowd.design.alpha);
+            sums.runs += 1;
+            sums.excluded += excluded.len() as u64;
+            // A test that is not defined finds nothing.
+            sums.tests
+                .iter_mut()
+                .zip(tests)
+                .for_each(|(tally, found)| tally.add(Some(found.unwrap_or(false))));
+            for (i, interval) in intervals.into_iter().enumerate() {
+                let truth = claims.intervals[i].truth;
+                sums.intervals[i].add(interval.zip(truth).map(|([low, high], x)| low <= x && x <= high));
+                if let Some([low, high]) = interval {
+                    sums.widths[i].0 += high - low;
+                    sums.widths[i].1 += 1;
+                }
+            }
+        }
+    }
+
+    fn merge(&mut self, other: &Sums) {
+        for (own, other) in self.sizes.iter_mut().zip(&other.sizes) {
+            own.excluded += other.excluded;
+            own.runs += other.runs;
+            own.tests.iter_mut().zip(&other.tests).for_each(|(a, b)| a.merge(b));
+            own.intervals.iter_mut().zip(&other.intervals).for_each(|(a, b)| a.merge(b));
+            for (a, b) in own.widths.iter_mut().zip(&other.widths) {
+                *a = (a.0 + b.0, a.1 + b.1);
+            }
+        }
+    }
+
+    fn power(&self, design: &Design, claims: &Claims) -> Power {
+        let sizes: Vec<Size> = design
+            .participants
+            .iter()
+            .zip(&self.sizes)
+            .map(|(&participants, sums)| Size {
+                participants,
+                excluded: sums.excluded as f64 / (sums.runs.max(1) * u64::from(participants)) as f64,
+                tests: claims
+                    .tests
+                    .iter()
+                    .zip(&sums.tests)
+                    .map(|(claim, tally)| TestRate {
+                        of: claim.of.clone(),
+                        test: claim.test,
+                        null: claim.null,
+                        rate: tally.rate(),
+                    })
+                    .collect(),
+                intervals: claims
+                    .intervals
+                    .iter()
+                    .zip(sums.intervals.iter().zip(&sums.widths))
+                    .map(|(claim, (tally, &(width, n)))| IntervalRate {
+                        of: claim.of.clone(),
+                        interval: claim.interval,
+                        truth: claim.truth,
+                        coverage: tally.rate(),
+                        width: (n > 0).then(|| width / n as f64),
+                    })
+                    .collect(),
+            })
+            .collect();
+        let needed = claims
+            .tests
+            .iter()
+            .enumerate()
+            .filter(|(_, claim)| !claim.null)
+            .filter_map(|(i, claim)| {
+                let enough = sizes.iter().find(|size| size.tests[i].rate.rate >= design.power);
+                let rate = enough.or(sizes.last())?.tests[i].rate;
+                let participants = enough.map(|size| size.participants);
+                Some(Needed { of: claim.of.clone(), test: claim.test, participants, rate })
+            })
+            .collect();
+        Power {
+            study: design.study.id.clone(),
+            config_hash: design.study.config_hash(),
+            simulations: design.simulations,
+            seed: design.seed,
+            alpha: design.alpha,
+            power: design.power,
+            level: LEVEL,
+            replicates: REPLICATES,
+            sizes,
+            needed,
+        }
+    }
+}

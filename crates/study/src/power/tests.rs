@@ -1,0 +1,213 @@
+#![allow(clippy::unwrap_used)]
+
+use super::findings::PER_TRIAL;
+use super::*;
+use crate::definition::StudyDefinition;
+
+/// `blocks` of (conditions, pairs, rest of the block) with rules of screening.
+fn study(screening: &str, blocks: &[(&str, &str, usize, &str)]) -> StudyDefinition {
+    let block = |(id, conditions, pairs, rest): &(&str, &str, usize, &str)| {
+        let level =
+            |i: usize| if rest.contains("psychometric") { format!(", level = {i}") } else { String::new() };
+        let pairs: Vec<String> =
+            (0..*pairs).map(|i| format!("{{ id = \"{id}-{i}\", scene = \"a.toml\"{} }}", level(i))).collect();
+        let (target, _) = conditions.split_once(' ').unwrap();
+        let conditions = conditions.replace(' ', "\", \"");
+        format!(
+            "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"{conditions}\"]\n\
+             target = \"{target}\"\npairs = [{}]\n{rest}\n",
+            pairs.join(", ")
+        )
+    };
+    let mut names: Vec<&str> = blocks.iter().flat_map(|b| b.1.split(' ')).collect();
+    names.sort_unstable();
+    names.dedup();
+    let conditions: Vec<String> = names.iter().map(|n| format!("{n} = {{ technique = \"pa\" }}")).collect();
+    let text = format!(
+        "title = \"t\"\nquestion = \"q\"\nseed = 5\nsize = [64, 36]\nestimated_minutes = 1\n\
+         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
+         conditions = {{ {} }}\nscreening = {{ {screening} }}\n{}",
+        conditions.join(", "),
+        blocks.iter().map(block).collect::<String>()
+    );
+    StudyDefinition::parse("s.toml", &text).unwrap()
+}
+
+fn design(study: StudyDefinition, text: &str) -> Design {
+    DesignFile::parse("d.toml", &format!("study = \"s.toml\"\n{text}")).unwrap().design(study).unwrap()
+}
+
+fn run(study: StudyDefinition, text: &str) -> Power {
+    power(&design(study, text), &|_| {})
+}
+
+fn test<'a>(size: &'a Size, of: &str, name: &str) -> &'a TestRate {
+    size.tests.iter().find(|t| t.of == of && t.test.starts_with(name)).unwrap()
+}
+
+fn interval<'a>(size: &'a Size, of: &str, name: &str) -> &'a IntervalRate {
+    size.intervals.iter().find(|i| i.of == of && i.interval.starts_with(name)).unwrap()
+}
+
+/// Whether a rate of so many runs could come from `p`: within four standard errors.
+fn plausible(rate: &Rate, p: f64) -> bool {
+    (rate.rate - p).abs() <= 4.0 * (p * (1.0 - p) / rate.runs as f64).sqrt()
+}
+
+#[test]
+fn without_a_preference_tests_keep_alpha_and_intervals_cover_but_per_trial_ones_do_not() {
+    let study = study("", &[("clear", "pa mc", 6, "")]);
+    let power = run(
+        study,
+        "participants = [32]\nsimulations = 400\nseed = 2\n[[truth]]\npreference = 0.5\nicc = 0.3\n",
+    );
+    let size = &power.sizes[0];
+    for name in ["t-test of", "t-test, Holm", "sign", "Wilcoxon", "cluster-robust", "random-intercept"] {
+        let found = test(size, "clear", name);
+        assert!(found.null);
+        // Exact tests of few different numbers may stay below their level, none may exceed it.
+        assert!(found.rate.rate < 0.05 || plausible(&found.rate, 0.05), "{found:?}");
+    }
+    assert!(plausible(&test(size, "clear", "t-test of").rate, 0.05));
+    let covered = interval(size, "clear", "share of target choices, participants");
+    assert_eq!(covered.truth, Some(0.5));
+    assert!(plausible(&covered.coverage, 0.95), "{covered:?}");
+    // The negative control, and the platform's plain warning: counting choices instead of people.
+    let per_trial = test(size, "clear", PER_TRIAL);
+    assert!(per_trial.rate.low > 0.1, "{per_trial:?}");
+    let wilson = interval(size, "clear", "share of target choices, Wilson");
+    assert!(wilson.coverage.high < 0.9 && wilson.width < covered.width, "{wilson:?}");
+    assert!(power.needed.iter().all(|n| n.test.starts_with("equivalence")), "{:?}", power.needed);
+}
+
+#[test]
+fn a_scale_covers_the_true_differences_and_finds_those_that_are_there() {
+    let blocks = [("ab", "a b", 4, ""), ("bc", "b c", 4, ""), ("ca", "c a", 4, "")];
+    let power = run(
+        study("", &blocks),
+        "participants = [24]\nsimulations = 80\nseed = 3\n[[truth]]\njod = { a = 0.0, b = 0.0, c = 1.0 }\nobserver_sd = 0.3\n",
+    );
+    let size = &power.sizes[0];
+    let mut coverage = (0, 0);
+    for of in ["a − b", "a − c", "b − c"] {
+        let found = interval(size, of, "difference");
+        coverage = (coverage.0 + found.coverage.hits, coverage.1 + found.coverage.runs);
+        // Observers' own deviations shrink the pooled difference a little.
+        let stated = if of == "a − b" { 0.0 } else { -1.0 };
+        let truth = found.truth.unwrap();
+        assert!((truth - stated).abs() < 0.05 && (stated == 0.0 || truth > stated), "{truth}");
+    }
+    let coverage = Rate::new(coverage.0, coverage.1, 0);
+    assert!(coverage.rate > 0.9 && coverage.rate < 0.98, "{coverage:?}");
+    let nothing = test(size, "a − b", "difference");
+    assert!(nothing.null && (nothing.rate.rate < 0.05 || plausible(&nothing.rate, 0.07)), "{nothing:?}");
+    let found = test(size, "a − c", "difference");
+    assert!(!found.null && found.rate.rate > 0.9, "{found:?}");
+    let needed = power.needed.iter().find(|n| n.of == "b − c").unwrap();
+    assert_eq!((needed.participants, needed.rate), (Some(24), test(size, "b − c", "difference").rate));
+}
+
+#[test]
+fn the_share_of_the_excluded_is_the_careless_ones_and_those_who_leave() {
+    let blocks = [("real", "pa mc", 4, ""), ("easy", "pa mc", 6, "catch = true")];
+    let rules = "max_failed_catch_trials = 0, incomplete = true";
+    let text = "participants = { from = 10, to = 30, step = 20 }\nsimulations = 30\nseed = 4\n\
+                [observers]\ncareless = 0.2\ndropout = 0.1\n[[truth]]\npreference = 0.9\n";
+    let found = run(study(rules, &blocks), text);
+    // A careless one passes six catch trials with probability 1/64.
+    let expected = 1.0 - 0.9 * (0.8 + 0.2 / 64.0);
+    for size in &found.sizes {
+        let people = f64::from(size.participants) * 30.0;
+        // Who leaves before the first trial has no answers, and so is not among the excluded.
+        let none = 0.1 / 10.0;
+        let error = 4.0 * (expected * (1.0 - expected) / people).sqrt();
+        assert!((size.excluded - (expected - none)).abs() < error, "{} {expected}", size.excluded);
+    }
+    assert_eq!(found.sizes.iter().map(|s| s.participants).collect::<Vec<_>>(), [10, 30]);
+    // Without rules nobody is excluded, and the careless ones dilute what is found.
+    let lax = run(study("", &blocks), text);
+    assert_eq!(lax.sizes[1].excluded, 0.0);
+    let covers =
+        |power: &Power| interval(&power.sizes[1], "real", "share of target choices, part").coverage.rate;
+    assert!(covers(&found) > covers(&lax) + 0.2, "{} {}", covers(&found), covers(&lax));
+    // More participants find more, and the smaller study is part of the larger: the search is steady.
+    let rate = |i: usize| test(&found.sizes[i], "real", "t-test of").rate.rate;
+    assert!(rate(1) >= rate(0));
+    assert_eq!(found, run(study(rules, &blocks), text), "the seed repeats it on any number of threads");
+}
+
+#[test]
+fn thresholds_are_covered_at_a_given_truth() {
+    let rest = "[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"falling\"\nlabel = \"triangles\"\nlapse = 0.02";
+    let power = run(
+        study("", &[("levels", "full few", 5, rest)]),
+        "participants = [40]\nsimulations = 20\nseed = 6\n[[truth]]\nthreshold = 2.0\nwidth = 3.0\nlapse = 0.04\n",
+    );
+    let size = &power.sizes[0];
+    for name in ["threshold, posterior", "threshold, participants"] {
+        let found = interval(size, "levels", name);
+        assert_eq!((found.truth, found.coverage.runs), (Some(2.0), 20));
+        // Twenty at 95%: fewer than 16 has a probability below 3e-4.
+        assert!(found.coverage.hits >= 16 && found.width.unwrap() < 2.0, "{found:?}");
+    }
+    assert!(test(size, "levels", "t-test of").rate.rate > 0.9);
+}
+
+#[test]
+fn every_problem_of_a_design_is_named() {
+    let rest = "[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"x\"";
+    let blocks = [
+        ("one", "pa mc", 2, ""),
+        ("two", "pa photo", 2, ""),
+        ("lev", "pa mc", 3, rest),
+        ("easy", "pa mc", 1, "catch = true"),
+    ];
+    let study = study("", &blocks);
+    let good = "study = \"s.toml\"\nparticipants = [8, 16]\nsimulations = 20\nseed = 1\n[[truth]]\nblocks = [\"lev\"]\nthreshold = 1\n\
+                width = 1.5\n[[truth]]\nblocks = [\"two\"]\njod = { pa = 0, photo = 1.5 }\n[[truth]]\npreference = 0.6\nsd = 0.2\n";
+    let problems =
+        |text: &str| match DesignFile::parse("d.toml", text).and_then(|file| file.design(study.clone())) {
+            Ok(_) => Vec::new(),
+            Err(errors) => errors.0.iter().map(|p| p.to_string()).collect::<Vec<_>>(),
+        };
+    assert_eq!(problems(good), Vec::<String>::new());
+    let icc = match &DesignFile::parse("d.toml", good).unwrap().design(study.clone()).unwrap().truths[0] {
+        Some(Supposed { truth: Truth::Preference { icc, .. }, .. }) => *icc,
+        other => panic!("{other:?}"),
+    };
+    assert!((icc - 0.04 / 0.24).abs() < 1e-15);
+    for (from, to, named) in [
+        ("study = \"s.toml\"", "", "study: missing"),
+        ("[8, 16]", "[8, 8]", "participants = [8, 8]"),
+        ("[8, 16]", "[1]", "participants"),
+        ("[8, 16]", "{ from = 8, to = 4, step = 1 }", "participants"),
+        ("[8, 16]", "{ from = 2, to = 4000, step = 1 }", "participants"),
+        ("simulations = 20", "simulations = 0", "simulations = 0"),
+        ("seed = 1", "seed = -1", "seed"),
+        ("seed = 1", "seed = 1\nalpha = 1.0", "alpha"),
+        ("seed = 1", "seed = 1\npower = nan", "power"),
+        ("seed = 1", "seed = 1\nsamples = 3", "samples = 3: unknown key"),
+        ("seed = 1", "seed = 1\nobservers = { dropout = 2 }", "observers.dropout"),
+        ("seed = 1", "seed = 1\nobservers = 3", "observers"),
+        ("preference = 0.6", "preference = 1.6", "truth[2].preference"),
+        ("preference = 0.6", "preference = 0.6\njod = { pa = 1 }", "truth[2].preference: give one of"),
+        ("preference = 0.6", "", "truth[2].preference: give one of"),
+        ("sd = 0.2", "sd = 0.5", "truth[2].sd"),
+        ("sd = 0.2", "sd = 0.2\nicc = 0.1", "truth[2].sd: give icc or sd"),
+        ("sd = 0.2", "blocks = [\"easy\"]", "truth[2].blocks"),
+        ("sd = 0.2", "blocks = [\"two\"]", "truth[2].blocks = \"two\": an earlier"),
+        ("sd = 0.2", "blocks = [\"two\"]", "truth: no [[truth]] is of block one"),
+        ("photo = 1.5", "photo = nan", "truth[1].jod.photo"),
+        (", photo = 1.5", "", "truth: jod gives no quality for condition photo"),
+        ("width = 1.5", "", "truth[0].width: missing"),
+        ("[\"lev\"]", "[\"one\"]", "truth: a threshold is of a block with levels"),
+        ("[8, 16]", "[8, 16", "line 3"),
+    ] {
+        assert!(good.contains(from), "{from}");
+        let found = problems(&good.replacen(from, to, 1));
+        assert!(
+            found.iter().any(|p| p.starts_with(&format!("d.toml: {named}"))),
+            "{from} → {to}: {found:#?}"
+        );
+    }
+}
