@@ -37,6 +37,8 @@ enum Command {
     Stats(commands::stats::Args),
     /// Write a study's report: one HTML file, or Markdown with its figures.
     Report(commands::report::Args),
+    /// How many participants a study needs: simulated observers take it and are judged by its report.
+    Power(commands::power::Args),
     /// A published result, computed again, with what it left out.
     Paper(commands::paper::Args),
 }
@@ -71,6 +73,7 @@ fn main() -> ExitCode {
         Command::Bench(command) => commands::bench::run(command),
         Command::Stats(args) => commands::stats::run(args),
         Command::Report(args) => commands::report::run(args),
+        Command::Power(args) => commands::power::run(&args),
         Command::Paper(args) => commands::paper::run(args),
     };
     match done {

@@ -1,9 +1,9 @@
 //! What the answers of a study add up to: the paper's test, block by block.
 
-use crate::answers::{Participant, blocks, observers};
+use crate::answers::{Participant, conditions, tallies};
 use crate::definition::{Kind, StudyDefinition};
 use kelir_stats::inference::t_test_from_counts;
-use kelir_stats::pairwise::{Scale, ScaleOptions, pool, scale};
+use kelir_stats::pairwise::{Scale, ScaleOptions, Wins, scale};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -48,21 +48,13 @@ pub struct BlockSummary {
 
 /// Summaries of every block but catch blocks, in study order.
 pub fn summarise(study: &StudyDefinition, participants: &[&Participant]) -> Vec<BlockSummary> {
-    blocks(study)
+    study
+        .blocks
+        .iter()
+        .zip(tallies(study, participants))
         .filter(|(block, _)| !block.catch)
-        .map(|(block, range)| {
-            let pairs = block.pairs.len();
-            let mut counts: BTreeMap<u32, u64> = (0..=pairs as u32).map(|k| (k, 0)).collect();
-            let mut incomplete = 0;
-            for participant in participants {
-                let answers = participant.answers_to(&range);
-                if answers.len() == pairs {
-                    let chosen = answers.iter().filter(|given| given.chose_target).count();
-                    *counts.entry(chosen as u32).or_default() += 1;
-                } else if !answers.is_empty() {
-                    incomplete += 1;
-                }
-            }
+        .map(|(block, tally)| {
+            let counts: BTreeMap<u32, u64> = (0..).zip(tally.complete).collect();
             let test = TTest::of_counts(&counts, block.mu());
             BlockSummary {
                 id: block.id.clone(),
@@ -70,9 +62,9 @@ pub fn summarise(study: &StudyDefinition, participants: &[&Participant]) -> Vec<
                 kind: block.kind,
                 conditions: block.conditions.clone(),
                 target: block.target.clone(),
-                pairs,
+                pairs: block.pairs.len(),
                 n: test.n,
-                incomplete,
+                incomplete: tally.incomplete,
                 counts,
                 mean: test.mean,
                 sd: test.sd,
@@ -92,12 +84,21 @@ pub fn summarise(study: &StudyDefinition, participants: &[&Participant]) -> Vec<
 /// # Errors
 /// Why there is no scale, as a sentence.
 pub fn conditions_scale(study: &StudyDefinition, participants: &[&Participant]) -> Result<Scale, String> {
-    let (names, observers) = observers(study, participants);
+    let names = conditions(study);
     if names.len() < 3 {
         return Err(TOO_FEW_CONDITIONS.to_owned());
     }
-    pool(names.len(), &observers)
-        .and_then(|wins| scale(&names, &wins, ScaleOptions::default()))
+    let place = |name: &str| names.iter().position(|known| known == name).unwrap_or_default();
+    let mut wins = Wins::new(names.len());
+    let compared = study.blocks.iter().zip(tallies(study, participants)).filter(|(block, _)| !block.catch);
+    compared
+        .into_iter()
+        .try_for_each(|(block, tally)| {
+            let (target, other) = (place(&block.target), place(block.other()));
+            wins.add(target, other, tally.hits)?;
+            wins.add(other, target, tally.trials - tally.hits)
+        })
+        .and_then(|()| scale(&names, &wins, ScaleOptions::default()))
         .map_err(|error| format!("No scale: {error}."))
 }
 

@@ -164,14 +164,64 @@ pub fn blocks(study: &StudyDefinition) -> impl Iterator<Item = (&Block, Range<u3
     })
 }
 
+/// What participants chose in one block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tally {
+    /// Number of target choices → how many of those who answered all pairs made it.
+    pub complete: Vec<u64>,
+    /// Who answered some pairs but not all.
+    pub incomplete: u64,
+    /// Choices of the target, by whomever.
+    pub hits: u64,
+    /// All choices, by whomever.
+    pub trials: u64,
+}
+
+/// A tally of every block in study order, catch blocks too, in one walk over the answers.
+pub fn tallies(study: &StudyDefinition, participants: &[&Participant]) -> Vec<Tally> {
+    let ends: Vec<(u32, u64)> =
+        blocks(study).map(|(block, pairs)| (pairs.end, block.pairs.len() as u64)).collect();
+    let empty = |&(_, pairs): &(u32, u64)| Tally {
+        complete: vec![0; pairs as usize + 1],
+        incomplete: 0,
+        hits: 0,
+        trials: 0,
+    };
+    let mut tallies: Vec<Tally> = ends.iter().map(empty).collect();
+    for participant in participants {
+        let mut answers = participant.answers.iter().peekable();
+        for (tally, &(end, pairs)) in tallies.iter_mut().zip(&ends) {
+            let (mut hits, mut trials) = (0, 0);
+            while let Some(given) = answers.next_if(|given| given.pair < end) {
+                trials += 1;
+                hits += u64::from(given.chose_target);
+            }
+            tally.hits += hits;
+            tally.trials += trials;
+            if trials == pairs {
+                tally.complete[hits as usize] += 1;
+            } else {
+                tally.incomplete += u64::from(trials > 0);
+            }
+        }
+    }
+    tallies
+}
+
+/// The conditions of all blocks but catch blocks, sorted.
+pub fn conditions(study: &StudyDefinition) -> Vec<String> {
+    let compared = study.blocks.iter().filter(|block| !block.catch);
+    let mut names: Vec<String> = compared.flat_map(|block| block.conditions.iter().cloned()).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
 /// The conditions of all blocks but catch blocks, sorted, and what each participant chose over what: the way to a scale. Blocks of
 /// stills and of animations are pooled: the scale is of conditions, whatever is shown.
 pub fn observers(study: &StudyDefinition, participants: &[&Participant]) -> (Vec<String>, Vec<Observer>) {
     let compared: Vec<(&Block, Range<u32>)> = blocks(study).filter(|(block, _)| !block.catch).collect();
-    let mut names: Vec<String> =
-        compared.iter().flat_map(|(block, _)| block.conditions.iter().cloned()).collect();
-    names.sort();
-    names.dedup();
+    let names = conditions(study);
     let index = |name: &str| names.iter().position(|known| known == name);
     let sides: Vec<(Range<u32>, usize, usize)> = compared
         .into_iter()

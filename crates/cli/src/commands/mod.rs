@@ -4,6 +4,7 @@ pub mod animate;
 pub mod bench;
 mod drawing;
 pub mod paper;
+pub mod power;
 pub mod render;
 pub mod report;
 pub mod scene;

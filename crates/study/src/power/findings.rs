@@ -2,7 +2,7 @@
 
 use super::crowd::mean_chance;
 use super::design::{Design, Truth};
-use crate::answers::blocks;
+use crate::answers::{blocks, conditions};
 use crate::report::{ChoiceAnalysis, Report};
 use kelir_stats::inference::Bounds;
 use kelir_stats::pairwise::{ScaleOptions, Wins, scale};
@@ -157,10 +157,7 @@ fn true_differences(design: &Design) -> Vec<(String, String, Option<f64>)> {
     const ENDLESS: f64 = 1e9;
     let study = &design.study;
     let compared = || blocks(study).enumerate().filter(|(_, (block, _))| !block.catch);
-    let mut names: Vec<String> =
-        compared().flat_map(|(_, (block, _))| block.conditions.iter().cloned()).collect();
-    names.sort();
-    names.dedup();
+    let names = conditions(study);
     if names.len() < 3 {
         return Vec::new();
     }

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use kelir_render::file;
 use kelir_server::{Library, Made, Maker, Server, ServerConfig, Task, results};
 use kelir_stats::pairwise::Model;
 use kelir_stats::random::Random;
@@ -92,12 +91,7 @@ pub fn run(args: &Args) -> Result<()> {
             row("GET results, one answer more", report.http_next_s),
         ],
     ))?;
-    match &args.json {
-        Some(path) => {
-            file::write_atomic(path, serde_json::to_string_pretty(&report)?.as_bytes()).map_err(bad_input)
-        }
-        None => Ok(()),
-    }
+    super::write_json(args.json.as_deref(), &report)
 }
 
 async fn measure(data: &Path, people: u32) -> Result<Report> {
