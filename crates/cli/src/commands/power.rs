@@ -46,13 +46,14 @@ fn read(path: &Path) -> Result<Design> {
 
 fn text(found: &Power) -> String {
     let mut parts = vec![format!(
-        "{} ({}): {} simulated studies of each size, seed {}, α = {}, wanted power {}",
+        "{} ({}): {} simulated studies of each size, seed {}, α = {}, wanted power {}; a rate is known to ±{:.2} or better",
         found.study,
         &found.config_hash[..12],
         found.simulations,
         found.seed,
         found.alpha,
-        found.power
+        found.power,
+        0.98 / (found.simulations as f64).sqrt()
     )];
     let sizes: Vec<String> = found.sizes.iter().map(|size| format!("n = {}", size.participants)).collect();
     let header = |first: &[&'static str]| -> Vec<String> {
@@ -127,20 +128,18 @@ fn row(needed: &Needed, most: u32) -> Vec<String> {
     vec![needed.of.clone(), needed.test.to_owned(), participants, power]
 }
 
-/// Says it where a test of single choices cries wolf.
+/// Says it where a test of all choices cries wolf.
 fn warning(found: &Power) -> Option<String> {
-    let worst = found
+    let (participants, test) = found
         .sizes
         .iter()
         .flat_map(|size| size.tests.iter().map(move |test| (size.participants, test)))
-        .filter(|(_, test)| test.null && test.rate.low > found.alpha && test.test.contains("ignores"))
+        .filter(|(_, test)| test.null && test.rate.low > found.alpha && test.test.contains("ignoring"))
         .max_by(|a, b| a.1.rate.rate.total_cmp(&b.1.rate.rate))?;
-    let (participants, test) = worst;
     Some(format!(
-        "Do not judge block {} by the {}: with {participants} participants it finds a preference in {:.0}% of studies in which there is \
-         none, because choices of one participant are alike.",
+        "Do not judge block {} by a test of all choices that ignores who made them: with {participants} participants it finds a \
+         preference in {:.0}% of studies in which there is none, because choices of one participant are alike.",
         test.of,
-        test.test,
         100.0 * test.rate.rate
     ))
 }

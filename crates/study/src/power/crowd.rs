@@ -2,7 +2,7 @@
 
 use super::design::{Design, Supposed, Truth};
 use crate::answers::{Answers, Row, blocks};
-use crate::definition::GUESS;
+use crate::definition::{Block, GUESS};
 use crate::plan::TrialPlan;
 use kelir_stats::pairwise::Model;
 use kelir_stats::psychometric::Curve;
@@ -144,57 +144,66 @@ impl<'a> Crowd<'a> {
                 let quality = |name| place(name).map_or(0.0, |place| own.qualities[place]);
                 Model::Thurstone.probability(quality(&block.target) - quality(block.other()))
             }
-            Truth::Threshold { width, .. } => {
-                let Some((asked, level)) = block.psychometric.as_ref().zip(level) else { return GUESS };
-                let sign = asked.direction.sign();
-                let curve = Curve {
-                    sigmoid: asked.function,
-                    threshold: sign * own.value,
-                    width: *width,
-                    guess: GUESS,
-                    lapse: 0.0,
-                    eta: 0.0,
-                };
-                curve.proportion(sign * level)
-            }
+            Truth::Threshold { width, .. } => at_level(block, level, own.value, *width),
         }
     }
 }
 
-/// Probability of choosing the target over all observers, lapses included, at a pair's level; by a sum over observers' normal
-/// deviations where there is no closed form.
-pub(super) fn mean_chance(design: &Design, block: usize, level: Option<f64>) -> Option<f64> {
+/// What observers do on average in a block.
+pub(super) struct Moments {
+    /// Probability of choosing the target in each pair, lapses included.
+    pub(super) shares: Vec<f64>,
+    /// Variance over observers of the number of target choices.
+    pub(super) variance: f64,
+}
+
+/// The moments of a block's choices by observers who answer all of it with care; by a sum over their own normal deviations where there is
+/// no closed form. `None` for a catch block.
+pub(super) fn moments(design: &Design, block: usize) -> Option<Moments> {
     let supposed = design.truths.get(block)?.as_ref()?;
     let of_study = &design.study.blocks[block];
-    let chance = match &supposed.truth {
-        Truth::Preference { probability, .. } => *probability,
-        Truth::Quality { jod, observer_sd } => {
-            // Two normal deviations widen the noise of the choice itself, whose standard deviation one JOD measures in quartiles.
-            let noise = Model::Thurstone.jod();
-            let shrink = noise / (noise * noise + 2.0 * observer_sd * observer_sd).sqrt();
-            let difference = jod.get(&of_study.target)? - jod.get(of_study.other())?;
-            Model::Thurstone.probability(difference * shrink)
+    let lapsing = |chance: f64| (1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse;
+    let pairs = of_study.pairs.len() as f64;
+    if let Truth::Preference { probability, icc } = &supposed.truth {
+        let share = lapsing(*probability);
+        let own = (1.0 - supposed.lapse).powi(2) * icc * probability * (1.0 - probability);
+        let variance = pairs * share * (1.0 - share) + pairs * (pairs - 1.0) * own;
+        return Some(Moments { shares: vec![share; of_study.pairs.len()], variance });
+    }
+    // E[Σ p], E[Σ p(1 − p)] and E[(Σ p)²] over z.
+    let (mut shares, mut within, mut square, mut weights) = (vec![0.0; of_study.pairs.len()], 0.0, 0.0, 0.0);
+    for step in -60..=60 {
+        let z = f64::from(step) / 10.0;
+        let weight = (-0.5 * z * z).exp();
+        let mut count = 0.0;
+        for (pair, mean) in of_study.pairs.iter().zip(&mut shares) {
+            let chance = lapsing(match &supposed.truth {
+                Truth::Quality { jod, observer_sd } => {
+                    // Two deviations, of target and other.
+                    let difference = jod.get(&of_study.target)? - jod.get(of_study.other())?;
+                    Model::Thurstone.probability(difference + 2f64.sqrt() * observer_sd * z)
+                }
+                Truth::Threshold { threshold, width, threshold_sd } => {
+                    at_level(of_study, pair.level, threshold + threshold_sd * z, *width)
+                }
+                Truth::Preference { probability, .. } => *probability,
+            });
+            *mean += weight * chance;
+            within += weight * chance * (1.0 - chance);
+            count += chance;
         }
-        Truth::Threshold { threshold, width, threshold_sd } => {
-            let asked = of_study.psychometric.as_ref()?;
-            let sign = asked.direction.sign();
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for step in -60..=60 {
-                let z = f64::from(step) / 10.0;
-                let weight = (-0.5 * z * z).exp();
-                let curve = Curve {
-                    sigmoid: asked.function,
-                    threshold: sign * (threshold + threshold_sd * z),
-                    width: *width,
-                    guess: GUESS,
-                    lapse: 0.0,
-                    eta: 0.0,
-                };
-                sum += weight * curve.proportion(sign * level?);
-                weights += weight;
-            }
-            sum / weights
-        }
-    };
-    Some((1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse)
+        square += weight * count * count;
+        weights += weight;
+    }
+    shares.iter_mut().for_each(|share| *share /= weights);
+    let mean: f64 = shares.iter().sum();
+    Some(Moments { shares, variance: (within + square) / weights - mean * mean })
+}
+
+/// The block's psychometric function without lapses at a pair's level; guessing where there is none.
+fn at_level(block: &Block, level: Option<f64>, threshold: f64, width: f64) -> f64 {
+    let Some((asked, level)) = block.psychometric.as_ref().zip(level) else { return GUESS };
+    let sign = asked.direction.sign();
+    let (sigmoid, threshold) = (asked.function, sign * threshold);
+    Curve { sigmoid, threshold, width, guess: GUESS, lapse: 0.0, eta: 0.0 }.proportion(sign * level)
 }

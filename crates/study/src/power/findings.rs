@@ -1,6 +1,6 @@
 //! What a report claims, and what is true.
 
-use super::crowd::mean_chance;
+use super::crowd::moments;
 use super::design::{Design, Truth};
 use crate::answers::{blocks, conditions};
 use crate::report::{ChoiceAnalysis, Report};
@@ -40,10 +40,10 @@ pub(super) struct Outcome {
 /// The p-value of a test; `None` where it is not defined.
 type PValue = fn(&ChoiceAnalysis) -> Option<f64>;
 
-/// A block's tests. Those of equivalence ask for the opposite of the others.
+/// A block's tests but Holm's. Those of equivalence ask for the opposite of the others.
 const TESTS: [(&str, PValue); 8] = [
     ("t-test of participants' counts (the paper's)", |a| a.t_test.p),
-    ("sign test of the counts", |a| a.sign.as_ref().map(|t| t.p)),
+    (SECOND, |a| a.sign.as_ref().map(|t| t.p)),
     ("Wilcoxon test of the counts", |a| a.wilcoxon.as_ref().map(|t| t.p)),
     ("cluster-robust logit", |a| a.robust_logit.as_ref().map(|l| l.coefficients[0].p)),
     ("random-intercept logit", |a| a.mixed_logit.as_ref().map(|l| l.coefficients[0].p)),
@@ -52,8 +52,10 @@ const TESTS: [(&str, PValue); 8] = [
     ("equivalence within ±0.5 SD", |a| equivalence(a, Bounds::Sd(0.5))),
 ];
 
-/// The test that no clustered data should be judged by.
-pub(super) const PER_TRIAL: &str = "binomial test of single choices (ignores who made them)";
+/// The test that no clustered data should be judged by; right where each participant makes one choice.
+pub(super) const PER_TRIAL: &str = "binomial test of all choices, ignoring who made them";
+const SECOND: &str = "sign test of the counts";
+/// Beside the t-test, before [`SECOND`].
 const HOLM: &str = "t-test, Holm over blocks";
 const SCALE: &str = "difference on the scale";
 
@@ -68,25 +70,33 @@ impl Claims {
             (0..design.study.blocks.len()).filter(|&b| !design.study.blocks[b].catch).collect();
         for &b in &analysed {
             let block = &design.study.blocks[b];
-            let chances: Option<Vec<f64>> =
-                block.pairs.iter().map(|pair| mean_chance(design, b, pair.level)).collect();
-            let share = chances.map(|chances| chances.iter().sum::<f64>() / chances.len() as f64);
-            let chance = share == Some(0.5);
+            let moments = moments(design, b);
+            let mean = moments.as_ref().map_or(f64::NAN, |m| m.shares.iter().sum());
+            let variance = moments.map_or(f64::NAN, |m| m.variance);
+            let share = Some(mean / block.pairs.len() as f64).filter(|share| share.is_finite());
+            let distance = (mean - block.mu()).abs();
             let of = || block.id.clone();
             for (test, _) in TESTS {
-                // What is equal is equivalent: there those tests have power.
-                let null =
-                    if test.starts_with("equivalence") { !equivalent(design, b, test) } else { chance };
+                if test == SECOND {
+                    tests.push(TestClaim { of: of(), test: HOLM, null: distance < 1e-12 });
+                }
+                let null = match test {
+                    // What is equal is equivalent: there those tests have power.
+                    "equivalence within ±0.5 choices" => distance >= 0.5,
+                    "equivalence within ±0.5 SD" => distance >= 0.5 * variance.sqrt(),
+                    _ => distance < 1e-12,
+                };
+                // With one choice a participant there is nobody to ignore.
+                let test = if test == PER_TRIAL && block.pairs.len() == 1 { "binomial test" } else { test };
                 tests.push(TestClaim { of: of(), test, null });
             }
-            tests.push(TestClaim { of: of(), test: HOLM, null: chance });
             let threshold = match design.truths[b].as_ref().map(|t| &t.truth) {
                 Some(Truth::Threshold { threshold, .. }) => Some(*threshold),
                 _ => None,
             };
             for (interval, truth) in [
                 ("share of target choices, participants resampled", share),
-                ("share of target choices, Wilson's (ignores who made them)", share),
+                ("share of target choices, ignoring who made them (Wilson)", share),
                 ("threshold, posterior", threshold),
                 ("threshold, participants resampled", threshold),
             ] {
@@ -118,8 +128,12 @@ impl Claims {
         debug_assert_eq!(report.blocks.len(), self.blocks);
         for block in &report.blocks {
             let analysis = &block.analysis;
-            tests.extend(TESTS.iter().map(|(_, p)| p(analysis).map(|p| p < alpha)));
-            tests.push(block.p_holm.map(|p| p < alpha));
+            for (test, p) in TESTS {
+                if test == SECOND {
+                    tests.push(block.p_holm.map(|p| p < alpha));
+                }
+                tests.push(p(analysis).map(|p| p < alpha));
+            }
             let proportion = analysis.proportion.as_ref();
             let resampled = proportion.and_then(|p| p.by_participant.as_ref());
             intervals.push(resampled.map(|b| [b.low, b.high]));
@@ -140,17 +154,6 @@ impl Claims {
     }
 }
 
-/// Whether the mean number of target choices lies within the bounds of an equivalence test. Bounds in standard deviations are taken as
-/// met exactly where there is no preference.
-fn equivalent(design: &Design, block: usize, test: &str) -> bool {
-    let of_study = &design.study.blocks[block];
-    let chances: Option<Vec<f64>> =
-        of_study.pairs.iter().map(|p| mean_chance(design, block, p.level)).collect();
-    let Some(chances) = chances else { return false };
-    let distance = (chances.iter().sum::<f64>() - of_study.mu()).abs();
-    if test.ends_with("choices") { distance < 0.5 } else { distance < 1e-12 }
-}
-
 /// The differences of all conditions on the scale that endless answers would give, in the order of a report's; none without a scale.
 fn true_differences(design: &Design) -> Vec<(String, String, Option<f64>)> {
     // Endless: shares are then known to nine digits.
@@ -166,8 +169,7 @@ fn true_differences(design: &Design) -> Vec<(String, String, Option<f64>)> {
         for (b, (block, _)) in compared() {
             let place = |name: &str| names.iter().position(|known| known == name);
             let (target, other) = (place(&block.target)?, place(block.other())?);
-            for pair in &block.pairs {
-                let chance = mean_chance(design, b, pair.level)?;
+            for chance in moments(design, b)?.shares {
                 if !(1e-6..=1.0 - 1e-6).contains(&chance) {
                     return None;
                 }

@@ -75,7 +75,7 @@ fn without_a_preference_tests_keep_alpha_and_intervals_cover_but_per_trial_ones_
     // The negative control, and the platform's plain warning: counting choices instead of people.
     let per_trial = test(size, "clear", PER_TRIAL);
     assert!(per_trial.rate.low > 0.1, "{per_trial:?}");
-    let wilson = interval(size, "clear", "share of target choices, Wilson");
+    let wilson = interval(size, "clear", "share of target choices, ignoring");
     assert!(wilson.coverage.high < 0.9 && wilson.width < covered.width, "{wilson:?}");
     assert!(power.needed.iter().all(|n| n.test.starts_with("equivalence")), "{:?}", power.needed);
 }
@@ -85,7 +85,7 @@ fn a_scale_covers_the_true_differences_and_finds_those_that_are_there() {
     let blocks = [("ab", "a b", 4, ""), ("bc", "b c", 4, ""), ("ca", "c a", 4, "")];
     let power = run(
         study("", &blocks),
-        "participants = [24]\nsimulations = 80\nseed = 3\n[[truth]]\njod = { a = 0.0, b = 0.0, c = 1.0 }\nobserver_sd = 0.3\n",
+        "participants = [24]\nsimulations = 60\nseed = 3\n[[truth]]\njod = { a = 0.0, b = 0.0, c = 1.0 }\nobserver_sd = 0.3\n",
     );
     let size = &power.sizes[0];
     let mut coverage = (0, 0);
@@ -151,6 +151,38 @@ fn thresholds_are_covered_at_a_given_truth() {
         assert!(found.coverage.hits >= 16 && found.width.unwrap() < 2.0, "{found:?}");
     }
     assert!(test(size, "levels", "t-test of").rate.rate > 0.9);
+}
+
+#[test]
+fn moments_are_those_of_many_simulated_observers() {
+    use super::crowd::moments;
+    let rest = "[blocks.psychometric]\nfunction = \"gaussian\"\ndirection = \"rising\"\nlabel = \"x\"";
+    let study = study("", &[("lev", "a b", 3, rest), ("jod", "b c", 4, ""), ("pref", "c a", 5, "")]);
+    let text = "participants = [20000]\nsimulations = 20\nseed = 8\n\
+                [[truth]]\nblocks = [\"lev\"]\nthreshold = 1.2\nwidth = 2.0\nthreshold_sd = 0.8\nlapse = 0.1\n\
+                [[truth]]\nblocks = [\"jod\"]\njod = { b = 1.0, c = 0.3 }\nobserver_sd = 0.7\n\
+                [[truth]]\nblocks = [\"pref\"]\npreference = 0.7\nicc = 0.3\nlapse = 0.2\n";
+    let design = design(study, text);
+    let answers = Crowd::new(&design).take(0);
+    for (b, (_, pairs)) in crate::answers::blocks(&design.study).enumerate() {
+        let count = |p: &&Participant| p.answers_to(&pairs).iter().filter(|g| g.chose_target).count() as f64;
+        let counts: Vec<f64> = answers.participants().iter().map(count).collect();
+        let n = counts.len() as f64;
+        let mean = counts.iter().sum::<f64>() / n;
+        let variance = counts.iter().map(|c| (c - mean).powi(2)).sum::<f64>() / n;
+        let expected = moments(&design, b).unwrap();
+        let truth: f64 = expected.shares.iter().sum();
+        assert!((mean - truth).abs() < 4.0 * (variance / n).sqrt(), "block {b}: {mean} {truth}");
+        // Counts are flatter than normal: their variance has a relative error below √(2/n).
+        assert!(
+            (variance / expected.variance - 1.0).abs() < 4.0 * (2.0 / n).sqrt(),
+            "block {b}: {variance} {}",
+            expected.variance
+        );
+        // The negative control: independent choices would vary less.
+        let independent: f64 = expected.shares.iter().map(|p| p * (1.0 - p)).sum();
+        assert!(variance / independent > 1.1, "block {b}");
+    }
 }
 
 #[test]
