@@ -110,6 +110,10 @@ export interface Analysis {
   equivalence: Array<{ bounds: { points: number } | { sd: number }; p: number; interval_90: Interval }>;
   bayes: { bf01: number; bf10: number } | null;
   power: Array<{ n: number; d: number; alpha: number; power: number }>;
+  detectable?: { d: number; power: number } | null;
+  sign?: { n: number; successes: number; p: number } | null;
+  wilcoxon?: { n: number; v: number; p: number } | null;
+  binomial?: { n: number; successes: number; p: number } | null;
   proportion: Proportion | null;
   intraclass: { icc: number; design_effect: number } | null;
   robust_logit: { coefficients: Coefficient[] } | null;

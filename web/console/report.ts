@@ -80,12 +80,15 @@ function statistics(report: Report): Node[] {
     ["Equivalent within ±0.5 choices", "p of two one-sided tests", (b) => tost(b, "points")],
     ["Equivalent within ±0.5 SD", "p of two one-sided tests", (b) => tost(b, "sd")],
     ["Bayes factor BF₀₁", "for no effect; JZS", (b) => [number(significant(b.analysis.bayes?.bf01), b.analysis.bayes?.bf01)]],
+    ["Sign test", "p, without normality", (b) => [number(pValue(b.analysis.sign?.p), b.analysis.sign?.p)]],
+    ["Wilcoxon's signed ranks", "p, ties exact", (b) => [number(pValue(b.analysis.wilcoxon?.p), b.analysis.wilcoxon?.p)]],
     ["Share of target choices", "95% interval, resampled participants", (b) => estimate(b.analysis.proportion?.proportion, b.analysis.proportion?.by_participant ?? b.analysis.proportion?.wilson, 3)],
     ["Intraclass correlation", "how alike one participant's choices are", (b) => [number(fixed(b.analysis.intraclass?.icc, 3), b.analysis.intraclass?.icc)]],
     ["Log odds, cluster-robust", "95% interval", (b) => logit(b.analysis.robust_logit?.coefficients[0])],
     ["Log odds, random intercept", "95% interval", (b) => logit(b.analysis.mixed_logit?.coefficients[0])],
     ["Chose the left picture", "far from 0.5: a bias of side", (b) => estimate(b.left?.proportion, b.left?.wilson, 3)],
     ["Power at d = 0.2, 0.5, 0.8", "with this n", (b) => b.analysis.power.flatMap((plan, i) => [...(i > 0 ? [asNode(", ")] : []), number(fixed(plan.power, 2), plan.power)])],
+    ["Found with 80% power", "true effect in SD, with this n", (b) => [number(fixed(b.analysis.detectable?.d, 2), b.analysis.detectable?.d)]],
     ...(everybody === null ? [] : [["t, p with the excluded", "everybody's answers", (_: BlockReport, i: number) => [number(fixed(everybody[i]?.t, 3), everybody[i]?.t), ", p ", number(pValue(everybody[i]?.p), everybody[i]?.p)].map(asNode)] as [string, string, (block: BlockReport, i: number) => Node[]]]),
   ];
   const hooks = (block: BlockReport) => ({ "data-testid": `report-${block.id}`, "data-p-holm": block.p_holm, "data-g": block.analysis.effect?.g, "data-bf01": block.analysis.bayes?.bf01 });

@@ -26,13 +26,18 @@ pub(crate) fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return fixed(x, 0);
     }
-    if !(1e-3..1e6).contains(&size) {
-        let text = format!("{x:.*e}", digits.saturating_sub(1));
-        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-        return format!("{} × 10{}", mantissa.replace('-', "−"), superscript(exponent));
+    if !(1e-4..1e6).contains(&size) {
+        return power_of_ten(x, digits);
     }
     let whole = size.log10().floor() as i64 + 1;
     fixed(x, (digits as i64 - whole).clamp(0, 12) as usize)
+}
+
+/// "2.04 × 10⁻⁴".
+fn power_of_ten(x: f64, digits: usize) -> String {
+    let text = format!("{x:.*e}", digits.saturating_sub(1));
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    format!("{} × 10{}", mantissa.replace('-', "−"), superscript(exponent))
 }
 
 fn superscript(digits: &str) -> String {
@@ -43,7 +48,7 @@ fn superscript(digits: &str) -> String {
 
 /// A p-value: four decimals, or three significant digits below a thousandth.
 pub(crate) fn p_value(p: f64) -> String {
-    if p >= 0.001 { fixed(p, 4) } else { significant(p, 3) }
+    if p >= 0.001 || p == 0.0 { fixed(p, 4) } else { power_of_ten(p, 3) }
 }
 
 /// "p = 0.1606".
@@ -91,13 +96,14 @@ mod tests {
             (fixed(-0.0001, 2), "0.00"),
             (fixed(f64::NEG_INFINITY, 2), "−∞"),
             (fixed(f64::NAN, 2), "–"),
-            (significant(-0.000203782, 3), "−2.04 × 10⁻⁴"),
+            (significant(-0.000203782, 3), "−0.000204"),
+            (significant(-0.0000203782, 3), "−2.04 × 10⁻⁵"),
             (significant(1.25e7, 2), "1.2 × 10⁷"),
             (significant(123.456, 3), "123"),
             (significant(0.012345, 3), "0.0123"),
             (p_value(0.160569), "0.1606"),
             (p_value(2.03782e-4), "2.04 × 10⁻⁴"),
-            (p_value(0.0), "0"),
+            (p_value(0.0), "0.0000"),
             (list(&["a".into(), "b".into(), "c".into()]), "a, b and c"),
             (count(1, "pair"), "1 pair"),
         ] {

@@ -104,6 +104,23 @@ pub fn levels() -> Study {
     Study { blocks, people: (0..100).map(person).collect(), ..Study::default() }
 }
 
+/// Three conditions, each compared with each other one; `circular` participants choose in a circle, `straight` ones do not.
+pub fn triangle(circular: usize, straight: usize) -> Study {
+    let block = |id: &str, a: &str, b: &str| {
+        format!(
+            "[[blocks]]\nid = \"{id}\"\ntitle = TITLE\nkind = \"still\"\nconditions = [\"{a}\", \"{b}\"]\ntarget = \"{a}\"\n\
+             pairs = [{{ id = \"{id}-pair\", scene = \"a.toml\" }}]\n"
+        )
+    };
+    let blocks =
+        [block("first", "pa", "mc"), block("second", "mc", "photo"), block("third", "photo", "pa")].concat();
+    let person = |last: &'static str| {
+        vec![("first-pair", "pa", 900.0), ("second-pair", "mc", 900.0), ("third-pair", last, 900.0)]
+    };
+    let people = (0..circular).map(|_| person("photo")).chain((0..straight).map(|_| person("pa")));
+    Study { blocks, people: people.collect(), ..Study::default() }
+}
+
 /// A study whose every free text attacks whatever shows it.
 pub fn hostile() -> Study {
     let evil = "=cmd|' /C calc'!A0 <script>alert('1')</script> | *a* [b](javascript:alert(1)) \"><img src=x onerror=alert(1)> \u{1b}[31m";

@@ -3,7 +3,7 @@
 
 mod fixture;
 
-use fixture::{Study, hostile, levels, paper, svg_disks};
+use fixture::{Study, hostile, levels, paper, svg_disks, triangle};
 use kelir_report::{Document, Figures, Sample, StudyReport, csv, html, markdown, numbers, text};
 
 /// t, its p, and the p of the binomial test of all choices and of the sign test, by R 4.2.2: `t.test(rep(0:2, c(12, 14, 6)), mu = 1)`,
@@ -200,6 +200,23 @@ fn a_psychometric_function_is_drawn_with_its_data() {
     assert!(html(&document).contains("Schütt"), "the paper of the method is cited");
     let without = html(&Document::of(&paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report()));
     assert!(!without.contains("Schütt"), "and not where it was not used");
+}
+
+#[test]
+fn circles_are_counted_and_said() {
+    // One triad a participant; of three conditions it is either a circle (ζ = 0) or none (ζ = 1).
+    for (circular, straight, share, zeta) in
+        [(6, 14, "6 of 20 (30%;", "0.70"), (0, 20, "0 of 20 (0%;", "1.00")]
+    {
+        let report = triangle(circular, straight).report();
+        let rows = numbers(&report);
+        let found = rows.iter().find(|n| n.statistic.starts_with("circular triads")).unwrap();
+        assert_eq!((found.value, found.n), (Some(circular as f64), Some(20)));
+        let plain = text(&Document::of(&report));
+        assert!(plain.contains(&format!("Circular triads: {share}")), "{plain}");
+        assert!(plain.contains(&format!("coefficient of consistence {zeta}")), "{plain}");
+        assert!(html(&Document::of(&report)).contains("Babington Smith"));
+    }
 }
 
 #[test]
