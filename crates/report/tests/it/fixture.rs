@@ -2,9 +2,9 @@
 
 use kelir_report::{Chain, Excluded, Participants, Stimulus, StudyReport};
 use kelir_study::StudyDefinition;
-use kelir_study::analysis::Answer;
-use kelir_study::report::{Observation, Report};
-use kelir_study::screening::{Seen, screen};
+use kelir_study::answers::{Answers, Participant, Row};
+use kelir_study::report::Report;
+use kelir_study::screening::screen;
 use serde_json::json;
 
 /// R 4.2.2: `t.test(rep(0:2, c(12, 14, 11)), mu = 1)$statistic`.
@@ -150,34 +150,25 @@ impl Study {
 }
 
 fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyReport {
-    let block_of = |pair: &str| design.blocks.iter().find(|b| b.pairs.iter().any(|p| p.id == pair)).unwrap();
-    let ids: Vec<String> = (0..people.len()).map(|i| format!("person-{i:03}")).collect();
-    let (mut everybody, mut judged, mut excluded) = (Vec::new(), Vec::new(), Vec::new());
-    for (session_id, answers) in ids.iter().zip(people) {
-        let own: Vec<Observation<'_>> = answers
-            .iter()
-            .enumerate()
-            .map(|(k, (pair_id, chosen_condition, rt_ms))| Observation {
-                answer: Answer { session_id, block_id: &block_of(pair_id).id, pair_id, chosen_condition },
-                chose_left: k % 2 == 0,
-                rt_ms: *rt_ms,
-            })
-            .collect();
-        let seen: Vec<Seen<'_>> = own
-            .iter()
-            .map(|o| Seen {
-                block_id: o.answer.block_id,
-                chosen_condition: o.answer.chosen_condition,
-                chose_left: o.chose_left,
-                rt_ms: o.rt_ms,
-            })
-            .collect();
-        let reasons = screen(&design, &seen);
-        everybody.extend(own.iter().copied());
+    let mut answers = Answers::new(&design);
+    for (i, own) in people.iter().enumerate() {
+        for (k, (pair_id, chosen, rt_ms)) in own.iter().enumerate() {
+            let block = design.blocks.iter().find(|b| b.pairs.iter().any(|p| p.id == *pair_id)).unwrap();
+            let chose_left = k % 2 == 0;
+            let rest = block.conditions.iter().find(|c| *c != chosen).unwrap();
+            let left_condition = if chose_left { chosen } else { rest.as_str() };
+            let session_id = &format!("person-{i:03}");
+            answers.push(Row { session_id, pair_id, left_condition, chose_left, rt_ms: *rt_ms });
+        }
+    }
+    let everybody = answers.participants();
+    let (mut judged, mut excluded) = (Vec::<&Participant>::new(), Vec::new());
+    for &participant in &everybody {
+        let reasons = screen(&design, participant);
         if reasons.is_empty() {
-            judged.extend(own);
+            judged.push(participant);
         } else {
-            excluded.push(Excluded { session_id: session_id.clone(), reasons });
+            excluded.push(Excluded { session_id: participant.session_id.to_string(), reasons });
         }
     }
     let report = Report::of(&design, &judged);
