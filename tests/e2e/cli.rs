@@ -204,3 +204,76 @@ fn compose_file_is_valid_where_a_client_can_tell() {
     }
     eprintln!("no compose client here: docker-compose.yml is not validated");
 }
+
+/// Files of a folder by name.
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Starts `kelir ARGS`, sends it `signal` after `wait`, and answers how it ended.
+fn interrupted(args: &[&str], signal: &str, wait: std::time::Duration) -> std::process::ExitStatus {
+    let mut child = std::process::Command::new(kelir_tests::binary())
+        .args(args)
+        .stdin(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(wait);
+    let kill = std::process::Command::new("kill").args([signal, &child.id().to_string()]).output().unwrap();
+    drop(kill); // it may be too late
+    child.wait().unwrap()
+}
+
+#[test]
+fn an_interrupted_render_leaves_no_half_written_file() {
+    use std::time::Duration;
+    let folder = tempfile::tempdir().unwrap();
+    let good = scene(folder.path(), str::to_owned);
+    let inputs = names(folder.path());
+    let out = folder.path().join("out.exr");
+    let (out, half) = (out.to_str().unwrap(), Duration::from_millis(500));
+    // Hours of samples: it is interrupted while it draws.
+    let long = [
+        "render",
+        &good,
+        "--technique",
+        "mc",
+        "--spp",
+        "1000000",
+        "--no-skip",
+        "--backend",
+        "cpu",
+        "-o",
+        out,
+    ];
+    for signal in ["-INT", "-TERM", "-KILL"] {
+        let status = interrupted(&long, signal, half);
+        assert!(!status.success(), "{signal}: {status}");
+        assert_eq!(names(folder.path()), inputs, "after {signal}");
+    }
+    // Short ones, interrupted anywhere: the file is whole or absent, and a part is called so.
+    let png = folder.path().join("out.png");
+    let short = ["render", &good, "--technique", "pa", "--backend", "cpu", "-o", png.to_str().unwrap()];
+    let (mut whole, mut absent) = (0, 0);
+    for step in 0..12 {
+        interrupted(&short, "-KILL", Duration::from_millis(25 * step));
+        match png.is_file() {
+            true => {
+                image::open(&png).unwrap();
+                std::fs::remove_file(&png).unwrap();
+                whole += 1;
+            }
+            false => absent += 1,
+        }
+        let strange = |name: &String| {
+            !inputs.contains(name) && !(name.starts_with("out.png.") && name.ends_with(".part"))
+        };
+        assert_eq!(names(folder.path()).iter().find(|name| strange(name)), None);
+    }
+    assert!(absent > 0, "{whole} of 12 renders were done before they were interrupted");
+}

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::{Backend, RenderError, Renderer, Technique, View, exposure, renderer};
 
+pub mod kernels;
 mod savings;
 mod scaling;
 

@@ -61,3 +61,47 @@ pub fn of_scene(scene: &Scene, view: &View, moving: bool) -> f64 {
     }
     white(&theatres, view)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use glam::DVec3;
+    use kelir_scene::{Albedo, Emitter, EmitterShape, Lamp, Screen};
+
+    use super::*;
+    use crate::{Backend, Pixel, pa};
+
+    fn theatre(radiance: f64, ambient: Ambient) -> Theatre {
+        Theatre {
+            screen: Screen { width_m: 1.6, height_m: 0.9, albedo: Albedo::Uniform([0.8, 0.7, 0.6]) },
+            lamp: Lamp {
+                position_m: DVec3::new(0.0, 0.0, -1.5),
+                emitters: vec![Emitter {
+                    name: "lamp".into(),
+                    shape: EmitterShape::Rectangle { size_m: [0.1, 0.1] },
+                    radiance: [radiance; 3],
+                }],
+            },
+            ambient,
+            planes: Vec::new(),
+            exposure: Exposure::Auto,
+        }
+    }
+
+    /// A uniform dome alone: E = π L everywhere, so that the screen's radiance is albedo · L. It adds to the lamp's light, and the brightest
+    /// pixel drawn is exactly white.
+    #[test]
+    fn white_counts_the_dome() {
+        let view = View { size: [33, 19], pixel: Pixel::Area, skip: true };
+        let dome = Ambient::Dome { radiance: [3.0, 2.0, 1.0] };
+        let alone = white([&theatre(0.0, dome)], &view);
+        assert!((alone / (0.8 * 3.0) - 1.0).abs() < 1e-6, "{alone}");
+        let (both, lamp) = (theatre(100.0, dome), white([&theatre(100.0, Ambient::None)], &view));
+        let white = white([&both], &view);
+        assert!((white / (lamp + alone) - 1.0).abs() < 1e-6, "{white}, not {lamp} + {alone}");
+        let mut renderer = pa::renderer(&pa::Knobs::default(), Backend::Cpu).unwrap();
+        let frame = renderer.radiance(&both, &view).unwrap();
+        let brightest = frame.radiance.iter().flatten().fold(0f32, |m, l| m.max(*l));
+        assert!((f64::from(brightest) / white - 1.0).abs() < 1e-6, "{brightest}, not {white}");
+    }
+}

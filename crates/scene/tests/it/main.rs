@@ -5,6 +5,7 @@ mod assets;
 mod cloth;
 mod fuzz;
 mod good;
+mod minute;
 mod posed;
 mod refused;
 mod resampled;

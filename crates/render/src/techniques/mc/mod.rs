@@ -113,6 +113,17 @@ pub(crate) fn lattice(
     Ok(Box::new(Mc { lattice, ..Mc::new(Knobs::default(), gpu) }))
 }
 
+/// The sampler alone, for benchmarks: what it returns samples the first emitter at pixel (i, j) of a grey theatre.
+pub(crate) fn sampler(theatre: Theatre, view: &View, spp: u32) -> impl FnMut(usize, usize) + 'static {
+    let masks: Vec<_> = theatre.planes.iter().map(|p| Arc::new(Padded::new(&p.mask))).collect();
+    let plan = plan::Plan::new(&theatre, view, &masks, false).expect("a view of the screen's aspect");
+    let points = Points::new(1, (spp as usize / REPLICATES).max(1));
+    move |i, j| {
+        let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..masks.len() };
+        std::hint::black_box(sampler.sums::<1>(0, i, j, [0.0]));
+    }
+}
+
 impl Mc {
     fn new(knobs: Knobs, gpu: Option<gpu::Sampler>) -> Self {
         Self {

@@ -17,7 +17,7 @@ mod dome;
 mod gpu;
 mod native;
 pub(crate) mod plan;
-mod rows;
+pub(crate) mod rows;
 mod shadow_map;
 mod skips;
 pub mod table;
