@@ -46,7 +46,7 @@ pub fn savings(scene: &Scene, knobs: &Knobs, view: &View, frames: usize) -> Resu
             times[1].push(clock.elapsed().as_secs_f64() * 1e3);
         }
         // The first two frames fill what is kept.
-        let [with_ms, without_ms] = times.map(|mut t| median(&mut t[2..]));
+        let [with_ms, without_ms] = times.map(|mut t| if t.len() > 2 { median(&mut t[2..]) } else { 0.0 });
         let without_ms = if count == 0 { with_ms } else { without_ms };
         savings.push(Saving { skip: name, count, with_ms, without_ms });
     }
