@@ -14,7 +14,7 @@ use crate::{RenderError, Renderer, View, exposure};
 pub struct Saving {
     /// What is left out.
     pub skip: &'static str,
-    /// How often in the last frame: pixels, boxes, planes, tables, emitters or screens.
+    /// How often in a frame, at most: pixels, boxes, planes, tables, emitters or screens.
     pub count: u64,
     /// Median of a frame with every skip, ms.
     pub with_ms: f64,
@@ -31,14 +31,15 @@ pub fn savings(scene: &Scene, knobs: &Knobs, view: &View, frames: usize) -> Resu
         let mut with = Native::new(*knobs);
         let mut without = Native::with_skips(*knobs, Skips::ALL.without(skip));
         let mut times = [Vec::new(), Vec::new()];
-        let mut count = 0;
+        let mut count = 0u64;
         for k in 0..frames.max(1) + 2 {
             let theatre = slid(&still, k as f64 / frames.max(1) as f64);
             let clock = Instant::now();
             let stats = with.display(&theatre, view, white, &mut out)?;
             times[0].push(clock.elapsed().as_secs_f64() * 1e3);
-            count = stats.counts.get(counter).copied().unwrap_or(0);
-            if k >= 2 && count == 0 {
+            count = count.max(stats.counts.get(counter).copied().unwrap_or(0));
+            // The scene offers nothing of it.
+            if k == 2 && count == 0 {
                 break;
             }
             let clock = Instant::now();
