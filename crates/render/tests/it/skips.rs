@@ -91,7 +91,9 @@ fn same_bytes(name: &str, theatre: &Theatre, technique: &Technique, backend: Bac
     for (_, _, count) in Skips::EACH.into_iter().filter(|_| backend == Backend::Cpu) {
         assert_eq!(all.counts.get(count).copied().unwrap_or(0), 0, "{name}, {technique:?}: {count}");
     }
-    assert_eq!(all.counts.get("samples_skipped").copied().unwrap_or(0), 0, "{name}, {technique:?}");
+    for count in ["samples_skipped", "searches_skipped"] {
+        assert_eq!(all.counts.get(count).copied().unwrap_or(0), 0, "{name}, {technique:?}: {count}");
+    }
     Some(stats)
 }
 
@@ -102,13 +104,18 @@ fn every_feature_with_every_technique() {
         for technique in techniques() {
             let Some(stats) = same_bytes(name, &theatre, &technique, Backend::Cpu) else { continue };
             drawn += 1;
+            if let Technique::Pcss(_) = technique {
+                let offered = name != "nothing on the beam";
+                assert_eq!(stats.counts["searches_skipped"] > 0, offered, "{name}");
+            }
             if matches!(technique, Technique::Mc(_) | Technique::Points(_)) {
                 assert!(stats.counts["samples_skipped"] > 0, "{name}, {technique:?}");
                 let dark = u64::from(name.starts_with("a black emitter"));
                 assert_eq!(stats.counts["emitters_dark"], dark, "{name}");
             }
             if matches!(technique, Technique::Pcss(_)) && name != "nothing on the beam" {
-                assert!(stats.counts["searches_skipped"] > 0, "{name}");
+                let offered = name != "nothing on the beam";
+                assert_eq!(stats.counts["searches_skipped"] > 0, offered, "{name}");
             }
         }
     }
