@@ -99,7 +99,12 @@ fn of_block(block: &BlockReport) -> String {
     );
     let (Some(t), Some(df), Some(p), Some(mean)) = (summary.t, summary.df, summary.p, summary.mean) else {
         let why = summary.note.as_deref().unwrap_or("t is not defined");
-        return format!("{chose}; no test: {why}.");
+        // Where everybody chose alike, who is above and who below half the pairs still says something.
+        let sign = analysis
+            .sign
+            .as_ref()
+            .map_or(String::new(), |sign| format!(", but the exact sign test gives {}", p_equals(sign.p)));
+        return format!("{chose}; no t-test: {why}{sign}.");
     };
     let holm = match block.p_holm {
         Some(corrected) if corrected != p => format!(", after Holm {}", p_equals(corrected)),

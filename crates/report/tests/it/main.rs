@@ -293,6 +293,13 @@ fn an_empty_study_says_so_and_has_no_figures() {
     for form in [plain, html(&document), csv(&report), markdown(&document, &Figures::Embedded).text] {
         assert!(!form.contains("NaN") && !form.contains("inf"), "{form}");
     }
+    // All alike: no t, and the exact test says what there is to say: 2 · 2⁻³² = 4.66e-10.
+    let alike = text(&Document::of(&paper([[0, 0, 32], [3, 10, 19], [26, 7, 0]]).report()));
+    let one_line = alike.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        one_line.contains("t is not defined, but the exact sign test gives p = 4.66 × 10⁻¹⁰."),
+        "{one_line}"
+    );
     // One answer alone is no error either.
     let one = Study { people: vec![vec![("still-a", "pa", 900.0)]], ..Study::default() }.report();
     assert!(text(&Document::of(&one)).contains("no participant has answered every pair yet"));
