@@ -1,4 +1,4 @@
-//! Frames a second of PA: `cargo run --release -p kelir-render --example frames -- SCENE.toml [FRAMES] [WIDTH] [slid|posed|lamp|all]`, or `-- table`.
+//! Frames a second of PA: `cargo run --release -p kelir-render --example frames -- SCENE.toml [FRAMES] [WIDTH] [slid|posed|lamp|all|every] [cpu|gpu]`, or `-- table`.
 #![allow(clippy::print_stdout, clippy::expect_used)]
 
 use kelir_render::bench::{Case, frames, table};
@@ -29,7 +29,8 @@ fn main() {
         Some("all") => vec![Case::NothingSkipped],
         _ => vec![Case::Slid, Case::Posed, Case::LampMoved, Case::NothingSkipped],
     };
-    let report = frames(&mut scene, &technique, Backend::Cpu, &view, count, &cases).expect("drawn");
+    let backend = args.next().map_or(Backend::Cpu, |b| b.parse().expect("cpu or gpu"));
+    let report = frames(&mut scene, &technique, backend, &view, count, &cases).expect("drawn");
     println!("{}x{} {}", report.size[0], report.size[1], report.adapter);
     for case in report.cases {
         println!(

@@ -15,12 +15,14 @@
 mod background;
 mod dome;
 mod gpu;
+mod kept;
 mod native;
 pub(crate) mod plan;
 pub(crate) mod rows;
 mod shadow_map;
 mod skips;
 pub mod table;
+mod tiles;
 pub(crate) mod tilted;
 pub mod window;
 

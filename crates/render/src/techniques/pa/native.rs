@@ -1,25 +1,23 @@
 //! PA on all cores.
 
-use std::sync::Arc;
 use std::time::Instant;
 
-use kelir_scene::{Ambient, Mask, Theatre};
+use kelir_scene::{Ambient, Theatre};
 use rayon::prelude::*;
 
 use super::background::Background;
 use super::dome::{self, DomeLight, DomeMap};
+use super::kept::Tables;
 use super::plan::Plan;
 use super::rows::Combined;
-use super::table::{Sums, Table};
+use super::tiles::{Kind, State, TILE, Tiles};
 use super::{Knobs, Skips, Weights, shadow_map};
 use crate::encode::pack;
 use crate::simd::Isa;
 use crate::{Frame, Layer, RenderError, Renderer, Stats, View};
-use tiles::{Kind, State, TILE};
 
 mod loops;
 mod shading;
-mod tiles;
 mod visibility;
 
 /// PA's native renderer: keeps tables and the lit screen between drawings.
@@ -27,23 +25,9 @@ mod visibility;
 pub struct Native {
     knobs: Knobs,
     skips: Skips,
-    tables: Vec<Kept>,
+    tables: Tables,
     background: Option<Background>,
     domes: Vec<DomeMap>,
-}
-
-/// A table and the mask it was made from.
-#[derive(Debug)]
-struct Kept {
-    mask: Arc<Mask>,
-    channel: usize,
-    table: Table,
-}
-
-impl Kept {
-    fn wide(&self) -> bool {
-        matches!(self.table.sums, Sums::U64(_))
-    }
 }
 
 /// Where finished pixels go.
@@ -65,8 +49,7 @@ struct Job<'a> {
     weights: Weights,
     skips: Skips,
     plan: &'a Plan,
-    /// Tables of look-up `l` in channel `c` at `l * plan.channels + c`.
-    tables: Vec<&'a Table>,
+    tiles: Tiles<'a>,
     background: &'a Background,
     /// Shading factors differ between channels: 3, else 1.
     shades: usize,
@@ -130,48 +113,7 @@ impl Native {
 
     /// Leaves out only what is in `skips`, for tests and for measuring what each saves.
     pub fn with_skips(knobs: Knobs, skips: Skips) -> Self {
-        Self { knobs, skips, tables: Vec::new(), background: None, domes: Vec::new() }
-    }
-
-    /// Makes `self.tables` hold what `plan` needs and no other, building all of them anew unless `keep`; returns the index of each
-    /// look-up's tables.
-    fn build_tables(&mut self, theatre: &Theatre, plan: &Plan, keep: bool, stats: &mut Stats) -> Vec<usize> {
-        let mut needed: Vec<(usize, usize)> = Vec::new();
-        for p in (0..theatre.planes.len()).filter(|p| plan.lookups.iter().any(|l| l.plane == *p)) {
-            needed.extend((0..theatre.planes[p].mask.channels).map(|c| (p, c)));
-        }
-        let serves = |kept: &Kept, &(p, c): &(usize, usize)| {
-            kept.mask.id == theatre.planes[p].mask.id && kept.channel == c && kept.wide() == plan.wide[p]
-        };
-        let (kept, mut spare): (Vec<Kept>, Vec<Kept>) = std::mem::take(&mut self.tables)
-            .into_iter()
-            .partition(|kept| keep && needed.iter().any(|n| serves(kept, n)));
-        self.tables = kept;
-        let mut built = 0;
-        for need in &needed {
-            if self.tables.iter().any(|kept| serves(kept, need)) {
-                continue;
-            }
-            let mask = &theatre.planes[need.0].mask;
-            let old = spare
-                .iter()
-                .position(|k| k.wide() == plan.wide[need.0] && k.table.width == mask.width)
-                .map(|i| spare.swap_remove(i).table);
-            let table = Table::new(mask, need.1, plan.wide[need.0], old);
-            self.tables.push(Kept { mask: mask.clone(), channel: need.1, table });
-            built += 1;
-        }
-        stats.counts.insert("tables_built".into(), built);
-        stats.counts.insert("tables_reused".into(), needed.len() as u64 - built);
-        let find = |p: usize, c: usize| {
-            let need = (p, c % theatre.planes[p].mask.channels);
-            self.tables.iter().position(|kept| serves(kept, &need)).unwrap_or(0)
-        };
-        plan.lookups
-            .iter()
-            .flat_map(|l| (0..plan.channels).map(move |c| (l.plane, c)))
-            .map(|(p, c)| find(p, c))
-            .collect()
+        Self { knobs, skips, tables: Tables::default(), background: None, domes: Vec::new() }
     }
 
     fn draw(&mut self, theatre: &Theatre, view: &View, sink: Sink) -> Result<Stats, RenderError> {
@@ -197,7 +139,7 @@ impl Native {
         let dark = if skips.has(Skips::DARK_EMITTERS) && !layers { dark } else { 0 };
         stats.counts.insert("emitters_dark".into(), dark as u64);
         step(&mut stats, "plan");
-        let tables = self.build_tables(theatre, &plan, skips.has(Skips::KEPT_TABLES), &mut stats);
+        self.tables.prepare(theatre, &plan, skips.has(Skips::KEPT_TABLES), &mut stats);
         step(&mut stats, "tables");
         if !skips.has(Skips::KEPT_SCREEN) {
             self.background = None;
@@ -227,7 +169,7 @@ impl Native {
             weights: self.knobs.weights,
             skips,
             plan: &plan,
-            tables: tables.iter().map(|t| &self.tables[*t].table).collect(),
+            tiles: Tiles { theatre, view, plan: &plan, skips, tables: self.tables.of(theatre, &plan) },
             background: &background,
             shades: if coloured { 3 } else { plan.channels.max(background.share_channels()) },
             layers,
@@ -332,8 +274,8 @@ impl Job<'_> {
         let [w, h] = self.view.size;
         let rows = first..(first + TILE[1]).min(h);
         let mut states = std::mem::take(&mut scratch.states);
-        self.see(&rows, &mut states);
-        let runs = self.runs(&states);
+        self.tiles.see(&rows, &mut states);
+        let runs = self.tiles.runs(&states);
         if !self.skips.has(Skips::KNOWN_BOXES) {
             states.fill(State::Penumbra);
         }

@@ -5,11 +5,11 @@ use std::ops::Range;
 use kelir_scene::Ambient;
 
 use super::loops::multiply;
-use super::tiles::{State, TILE};
 use super::{Counts, Job, Scratch};
 use crate::pa::plan::Lookup;
 use crate::pa::rows::Combined;
 use crate::pa::table::Table;
+use crate::pa::tiles::{State, TILE};
 use crate::pa::{Skips, Weights};
 use crate::project::pixel_m;
 
@@ -152,8 +152,8 @@ impl Job<'_> {
         counts: &mut Counts,
         out: &mut [f32],
     ) {
-        let (sub, entries) = (self.plan.sub, self.tables.len());
-        let (lookup, table): (&Lookup, &Table) = (&self.plan.lookups[e / self.plan.channels], self.tables[e]);
+        let (sub, entries) = (self.plan.sub, self.tiles.tables.len());
+        let (lookup, table): (&Lookup, &Table) = (&self.plan.lookups[e / self.plan.channels], self.tiles.tables[e]);
         let all = out.len() as u64;
         let mut boxes = 0;
         if let Some(frame) = &lookup.tilted {

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use glam::DVec2;
+use kelir_scene::{Ambient, Theatre};
 
-use kelir_scene::Ambient;
-
-use super::Job;
-use crate::pa::Skips;
-use crate::pa::table::{Sums, Table};
+use super::Skips;
+use super::plan::Plan;
+use super::table::{Sums, Table};
+use crate::View;
 use crate::project::pixel_m;
 
 /// Columns and rows of a tile: what is classified as lit, dark or penumbra at once.
@@ -36,7 +36,21 @@ pub enum Kind {
     Shade,
 }
 
-impl Job<'_> {
+/// What tiles are told apart by.
+pub struct Tiles<'a> {
+    /// The scene.
+    pub theatre: &'a Theatre,
+    /// The image.
+    pub view: &'a View,
+    /// Its boxes.
+    pub plan: &'a Plan,
+    /// What is left out.
+    pub skips: Skips,
+    /// Tables of look-up `l` in channel `c` at `l * plan.channels + c`.
+    pub tables: Vec<&'a Table>,
+}
+
+impl Tiles<'_> {
     /// State of look-up `l` in channel `c` over sub-pixel columns × rows, from the sum over every texel they touch.
     fn classify(&self, l: usize, c: usize, columns: Range<usize>, rows: Range<usize>) -> State {
         let (lookup, table) = (&self.plan.lookups[l], self.tables[l * self.plan.channels + c]);
@@ -71,7 +85,7 @@ impl Job<'_> {
     }
 
     /// What every tile of a band sees of every look-up in every channel, at `tile * entries + entry`.
-    pub(super) fn see(&self, rows: &Range<usize>, states: &mut Vec<State>) {
+    pub fn see(&self, rows: &Range<usize>, states: &mut Vec<State>) {
         let (sub, channels, entries) = (self.plan.sub, self.plan.channels, self.tables.len());
         let tiles = self.view.size[0].div_ceil(TILE[0]);
         states.clear();
@@ -100,25 +114,26 @@ impl Job<'_> {
         }
     }
 
+    /// Columns of a tile, pixels.
     fn columns(&self, tile: usize) -> Range<usize> {
         tile * TILE[0]..((tile + 1) * TILE[0]).min(self.view.size[0])
     }
 
+    /// What a tile needs that sees `states`.
+    pub fn kind(&self, states: &[State]) -> Kind {
+        let all = |state: State, skip: Skips| self.skips.has(skip) && states.iter().all(|s| *s == state);
+        match self.theatre.ambient {
+            Ambient::Dome { .. } => Kind::Shade,
+            _ if all(State::Lit, Skips::LIT_TILES) => Kind::Lit,
+            Ambient::None if !states.is_empty() && all(State::Dark, Skips::DARK_TILES) => Kind::Black,
+            _ => Kind::Shade,
+        }
+    }
+
     /// Runs of tiles of the same kind, the same for every row of a band: kind and columns.
-    pub(super) fn runs(&self, states: &[State]) -> Vec<(Kind, Range<usize>)> {
+    pub fn runs(&self, states: &[State]) -> Vec<(Kind, Range<usize>)> {
         let entries = self.tables.len();
-        let no_other_light = self.theatre.ambient == Ambient::None;
-        let kind = |t: usize| {
-            let of = &states[t * entries..(t + 1) * entries];
-            let all = |state: State, skip: Skips| self.skips.has(skip) && of.iter().all(|s| *s == state);
-            let hidden = no_other_light && !of.is_empty();
-            match () {
-                () if self.dome.is_some() => Kind::Shade,
-                () if all(State::Lit, Skips::LIT_TILES) => Kind::Lit,
-                () if hidden && all(State::Dark, Skips::DARK_TILES) => Kind::Black,
-                () => Kind::Shade,
-            }
-        };
+        let kind = |t: usize| self.kind(&states[t * entries..(t + 1) * entries]);
         let mut runs: Vec<(Kind, Range<usize>)> = Vec::new();
         for t in 0..self.view.size[0].div_ceil(TILE[0]) {
             match runs.last_mut() {
@@ -129,6 +144,7 @@ impl Job<'_> {
         runs
     }
 }
+
 /// State of everything between texel coordinates `low` and `high`. The box that stands for a quadrilateral may stick out of its hull
 /// by its own size at most.
 fn tilted_state(table: &Table, [low, high]: [DVec2; 2]) -> State {
