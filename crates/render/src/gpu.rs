@@ -172,22 +172,73 @@ impl Gpu {
         })
     }
 
+    /// A texture of one level; [width, height, layers].
+    pub(crate) fn texture(
+        &self,
+        label: &str,
+        [width, height, layers]: [usize; 3],
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d {
+                width: width as u32,
+                height: height as u32,
+                depth_or_array_layers: layers as u32,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    /// Uploads texels, `bytes_per_row` each row, to the top left of a layer.
+    pub(crate) fn write(
+        &self,
+        texture: &wgpu::Texture,
+        layer: usize,
+        bytes: &[u8],
+        bytes_per_row: usize,
+        [width, height]: [usize; 2],
+    ) {
+        let mut to = texture.as_image_copy();
+        to.origin.z = layer as u32;
+        self.queue.write_texture(
+            to,
+            bytes,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(bytes_per_row as u32),
+                rows_per_image: None,
+            },
+            wgpu::Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: 1 },
+        );
+    }
+
+    /// A buffer that is copied to and mapped.
+    pub(crate) fn host(&self, label: &str, bytes: u64) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
     /// An output of `bytes` bytes on the device and the buffer it is read back through.
     pub(crate) fn output(&self, label: &str, bytes: u64) -> Output {
         let size = bytes.next_multiple_of(4).max(16);
-        let buffer = |usage| {
-            self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        Output {
-            device: buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
-            host: buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
+        let device = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
             size,
-        }
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        Output { device, host: self.host(label, size), size }
     }
 
     /// The bind group of a pipeline's group 0, bindings numbered in order.
@@ -217,29 +268,55 @@ impl Gpu {
     ) -> Result<R, RenderError> {
         let bytes = bytes.next_multiple_of(4).clamp(4, output.size);
         encoder.copy_buffer_to_buffer(&output.device, 0, &output.host, 0, bytes);
+        self.submit(encoder, &output.host, bytes)?.wait(take)
+    }
+
+    /// Submits `encoder`, which fills the first `bytes` of the mappable `host`, and does not wait.
+    pub(crate) fn submit<'a>(
+        &'a self,
+        encoder: wgpu::CommandEncoder,
+        host: &'a wgpu::Buffer,
+        bytes: u64,
+    ) -> Result<Pending<'a>, RenderError> {
         let index = self.queue.submit([encoder.finish()]);
         self.check()?;
-        let slice = output.host.slice(..bytes);
         let (sender, receiver) = std::sync::mpsc::channel();
-        slice.map_async(wgpu::MapMode::Read, move |result| {
-            // The receiver is gone only when this call has already failed.
+        host.slice(..bytes).map_async(wgpu::MapMode::Read, move |result| {
+            // The receiver is gone only when nobody waits any more.
             let _ = sender.send(result);
         });
-        self.device
-            .poll(wgpu::PollType::Wait { submission_index: Some(index), timeout: None })
-            .map_err(|e| RenderError::Gpu(format!("{}: {e}", self.adapter())))?;
-        self.check()?;
-        match receiver.try_recv() {
+        Ok(Pending { gpu: self, host, bytes, index, receiver })
+    }
+}
+
+/// Bytes on their way from the device.
+pub(crate) struct Pending<'a> {
+    gpu: &'a Gpu,
+    host: &'a wgpu::Buffer,
+    bytes: u64,
+    index: wgpu::SubmissionIndex,
+    receiver: std::sync::mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+impl Pending<'_> {
+    /// Waits and hands the bytes to `take`.
+    pub(crate) fn wait<R>(self, take: impl FnOnce(&[u8]) -> R) -> Result<R, RenderError> {
+        let failed = |what: String| RenderError::Gpu(format!("{}: {what}", self.gpu.adapter()));
+        self.gpu
+            .device
+            .poll(wgpu::PollType::Wait { submission_index: Some(self.index.clone()), timeout: None })
+            .map_err(|e| failed(e.to_string()))?;
+        self.gpu.check()?;
+        match self.receiver.try_recv() {
             Ok(Ok(())) => {}
-            Ok(Err(e)) => return Err(RenderError::Gpu(format!("{}: read back: {e}", self.adapter()))),
-            Err(_) => return Err(RenderError::Gpu(format!("{}: read back did not finish", self.adapter()))),
+            Ok(Err(e)) => return Err(failed(format!("read back: {e}"))),
+            Err(_) => return Err(failed("read back did not finish".into())),
         }
-        let view = slice
-            .get_mapped_range()
-            .map_err(|e| RenderError::Gpu(format!("{}: read back: {e}", self.adapter())))?;
+        let slice = self.host.slice(..self.bytes);
+        let view = slice.get_mapped_range().map_err(|e| failed(format!("read back: {e}")))?;
         let result = take(&view);
         drop(view);
-        output.host.unmap();
+        self.host.unmap();
         Ok(result)
     }
 }

@@ -15,7 +15,7 @@ fn shaders_are_valid() {
     };
     for (name, text) in shaders() {
         check(text).unwrap_or_else(|e| panic!("{name}: {e}"));
-        assert!(check(&text.replace("@workgroup_size(", "@workgroup_size(0 * ")).is_err(), "{name}");
+        assert!(check(&text.replace("@builtin(", "@builtin(no_")).is_err(), "{name}");
     }
 }
 

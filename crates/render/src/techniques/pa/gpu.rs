@@ -1,226 +1,106 @@
-//! PA on a GPU: the native renderer's plan and lit screen, its tables and loops in WGSL.
+//! PA on a GPU: the native renderer's plan, tiles and lit screen, its tables and loops in WGSL.
 //!
-//! A table holds sums along columns; one pass combines, for each image row, the rows of every box and sums them along x in
-//! wrapping u32 fixed point; the next looks up each pixel's boxes from integer differences; the last mixes the emitters,
-//! adds the ambient light and encodes. Ends and weights of all boxes come from the CPU in f64. Fixed point costs at most
-//! (columns of a box) / 2³² of visibility and f32 a few 1e-7.
+//! The host lists the tiles that see any penumbra, by the bounds that the native code uses; all others it writes itself while the
+//! device works. The device builds the tables; one pass combines, for each row of those tiles, the rows of every box in 64-bit
+//! fixed point; the next looks up each pixel's boxes from exact integer differences; the last mixes the emitters, adds the ambient
+//! light and encodes. Ends and weights of all boxes come from the host in f64, so what is left is the rounding of f32.
 //!
-//! The image is drawn in bands of rows, so that every buffer stays within the adapter's limits.
+//! Every pass draws one triangle over a target whose fragments are the answers, packed without gaps: what a rasteriser spreads over
+//! all cores, also a software one, and what a real GPU reads and writes in lines. Only the answers come back.
 
-use std::sync::Arc;
+mod passes;
+mod screen;
+mod tables;
+mod targets;
+mod words;
+mod work;
+
 use std::time::Instant;
 
-use bytemuck::{Pod, Zeroable};
-use kelir_scene::{Ambient, Mask, Texels, Theatre};
+use kelir_scene::{Ambient, Theatre};
+use rayon::prelude::*;
 
 use super::background::Background;
+use super::kept::Tables;
 use super::plan::Plan;
-use super::window::Windows;
+use super::tiles::{Kind, TILE, Tiles};
 use super::{Knobs, Weights, plan, shadow_map};
-use crate::encode::Srgb;
-use crate::gpu::{Gpu, Output};
+use crate::encode::{Srgb, pack};
+use crate::gpu::Gpu;
 use crate::{Frame, Layer, RenderError, Renderer, Stats, View};
 
-/// The shaders' texts, in the order they run.
-#[derive(Clone, Debug)]
-pub struct Shaders {
-    pub table: String,
-    pub rows: String,
-    pub visibility: String,
-    pub shade: String,
-}
+pub use passes::Shaders;
+use passes::{Constants, Pass, Passes, RowsParams, ShadeParams, VisibilityParams};
+use screen::DeviceScreen;
+use tables::DeviceTables;
+use targets::{CELLS, Host, Layers, List, Target};
+use work::{ACROSS, Batch, MOST_ROWS, MOST_TILES, Script, Stage, Tile, Work};
 
-impl Default for Shaders {
-    fn default() -> Self {
-        Self {
-            table: include_str!("table.wgsl").into(),
-            rows: include_str!("rows.wgsl").into(),
-            visibility: include_str!("visibility.wgsl").into(),
-            shade: include_str!("shade.wgsl").into(),
-        }
-    }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct TableParams {
-    pub width: u32,
-    pub height: u32,
-    pub max_code: u32,
-    pub unused: u32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct RowsParams {
-    pub first: u32,
-    pub rows: u32,
-    pub from_x: u32,
-    pub to_x: u32,
-    pub height: u32,
-    pub reach: u32,
-    pub windows: u32,
-    pub count: u32,
-    pub sums: u32,
-    pub interior: f32,
-    pub scale: f32,
-    pub unused: u32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct VisibilityParams {
-    pub width: u32,
-    pub rows: u32,
-    pub first: u32,
-    pub sub: u32,
-    pub start: u32,
-    pub end: u32,
-    pub channels: u32,
-    pub emitter: u32,
-    pub emitters: u32,
-    pub rest: u32,
-    pub share_channels: u32,
-    pub own_channels: u32,
-    pub by_irradiance: u32,
-    pub is_first: u32,
-    pub step_x: f32,
-    pub step_y: f32,
-    pub origin_x: f32,
-    pub origin_y: f32,
-    pub half_x: f32,
-    pub half_y: f32,
-}
-
-/// One plane of one piece on the device; the shader's `Lookup`.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct GpuLookup {
-    pub windows: u32,
-    pub count: u32,
-    pub reach: u32,
-    pub sums: u32,
-    pub channel: u32,
-    pub from_x: u32,
-    pub to_x: u32,
-    pub plane: u32,
-    pub interior: f32,
-    pub norm: f32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct ShadeParams {
-    pub width: u32,
-    pub rows: u32,
-    pub channels: u32,
-    pub emitters: u32,
-    pub rest: u32,
-    pub share_channels: u32,
-    pub lit_channels: u32,
-    pub planes: u32,
-    pub own_channels: u32,
-    pub paper: u32,
-    pub display: u32,
-    pub scale: f32,
-    pub k_d: f32,
-    pub s_r: f32,
-    pub s_g: f32,
-    pub s_b: f32,
-}
-
-/// Column sums of every channel of a mask.
-struct Table {
-    mask: Arc<Mask>,
-    channels: Vec<wgpu::TextureView>,
-}
-
-/// The lit screen of one band of rows on the device.
-struct Band {
-    first: usize,
-    rows: usize,
-    lit: wgpu::Buffer,
-    share: wgpu::Buffer,
-}
-
-/// Buffers that one band after the other uses, and how large they are.
-struct Work {
-    words: [u64; 5],
-    sums: wgpu::Buffer,
-    visibility: wgpu::Buffer,
-    weights: wgpu::Buffer,
-    own: wgpu::Buffer,
-    output: Output,
-}
-
-/// PA's GPU renderer: keeps pipelines, tables, the lit screen and buffers between drawings.
+/// PA's GPU renderer: keeps pipelines, tables, the lit screen and targets between drawings.
 pub struct OnGpu {
-    gpu: Gpu,
+    passes: Passes,
     knobs: Knobs,
-    table: wgpu::ComputePipeline,
-    rows: wgpu::ComputePipeline,
-    visibility: wgpu::ComputePipeline,
-    shade: wgpu::ComputePipeline,
-    tables: Vec<Table>,
-    background: Option<Background>,
-    bands: Vec<Band>,
-    work: Option<Work>,
-    /// Words that a buffer may have.
-    most_words: usize,
+    bins: wgpu::TextureView,
+    /// Tables on the host tell which tiles are in penumbra.
+    tables: Tables,
+    device_tables: DeviceTables,
+    background: Option<(Background, Option<DeviceScreen>)>,
+    words: List,
+    combined: Target,
+    visibility: Layers,
+    own: Layers,
+    answers: Target,
+    host: Host,
+    /// Tiles and combined rows of a batch.
+    most: [usize; 2],
 }
 
-/// A look-up as the row pass needs it.
-struct RowPass {
-    mask: u64,
-    height: usize,
-    windows: u32,
-    count: usize,
-    interior: f32,
-    scale: f32,
+/// Where answers go.
+enum Sink<'a> {
+    Display { white: f64, out: &'a mut [u32] },
+    /// Red, green, blue, then every emitter's visibility in every channel of the plan.
+    Radiance(&'a mut Vec<Vec<f32>>),
 }
 
-/// Everything about one frame that is not one band's.
-struct FramePlan {
-    plan: Plan,
-    lookups: Vec<GpuLookup>,
-    passes: Vec<RowPass>,
-    /// For each piece the range of its look-ups.
-    pieces: Vec<std::ops::Range<usize>>,
-    windows: Vec<u32>,
-    /// Words of sums a sub-row, of the piece with most.
-    sums: usize,
+/// What all batches of a frame share.
+struct Job<'a> {
+    work: &'a Work<'a>,
+    weights: Weights,
+    screen: &'a DeviceScreen,
+    /// The emitter whose share is what the others leave.
+    rest: usize,
+    /// Channels of the shading, and of each plane's own shadow.
+    shades: usize,
+    own_channels: usize,
 }
 
 impl OnGpu {
     /// Compiles `shaders`, which are the default ones but for tests that need wrong ones.
     pub fn new(gpu: Gpu, knobs: Knobs, shaders: &Shaders) -> Result<Self, RenderError> {
-        let limits = gpu.device.limits();
-        let pipeline = |label: &str, wgsl: &str, entry: &str| gpu.pipeline(&gpu.module(label, wgsl), entry);
+        let entries = Srgb::get().entries();
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let bins = gpu.texture("bins", [entries.len(), 1, 1], wgpu::TextureFormat::R32Uint, usage);
+        gpu.write(&bins, 0, bytemuck::cast_slice(entries), 4 * entries.len(), [entries.len(), 1]);
         let new = Self {
-            table: pipeline("table.wgsl", &shaders.table, "build"),
-            rows: pipeline("rows.wgsl", &shaders.rows, "combine"),
-            visibility: pipeline("visibility.wgsl", &shaders.visibility, "add"),
-            shade: pipeline("shade.wgsl", &shaders.shade, "shade"),
+            passes: Passes::new(gpu, shaders)?,
             knobs,
-            tables: Vec::new(),
+            bins: bins.create_view(&Default::default()),
+            tables: Tables::default(),
+            device_tables: DeviceTables::default(),
             background: None,
-            bands: Vec::new(),
-            work: None,
-            most_words: (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / 4) as usize,
-            gpu,
+            words: List::default(),
+            combined: Target::default(),
+            visibility: Layers::default(),
+            own: Layers::default(),
+            answers: Target::default(),
+            host: Host::default(),
+            most: [MOST_TILES, MOST_ROWS],
         };
-        new.gpu.check()?;
+        new.passes.gpu.check()?;
         Ok(new)
     }
 
-    /// Draws all bands; `take` gets each band's first row, its number of rows and the words that `shade` wrote.
-    fn draw(
-        &mut self,
-        theatre: &Theatre,
-        view: &View,
-        white: Option<f64>,
-        mut take: impl FnMut(usize, usize, &[u32]),
-    ) -> Result<Stats, RenderError> {
+    fn draw(&mut self, theatre: &Theatre, view: &View, mut sink: Sink) -> Result<Stats, RenderError> {
         let mut stats = Stats::default();
         let mut clock = Instant::now();
         let mut step = |stats: &mut Stats, name: &str| {
@@ -228,468 +108,383 @@ impl OnGpu {
             clock = Instant::now();
         };
         let theatre = &*shadow_map::seen(theatre, &self.knobs);
-        let frame = FramePlan::new(theatre, view, &self.knobs)?;
-        step(&mut stats, "plan");
-        let built = self.build_tables(theatre, &frame.plan)?;
-        stats.counts.insert("tables_built".into(), built);
-        step(&mut stats, "tables");
-        let reused = self.background.as_ref().is_some_and(|b| b.serves(theatre, view));
-        if !reused {
-            self.background = Some(Background::new(theatre, view));
-            self.bands.clear();
+        plan::refuse_on_gpu(theatre)?;
+        let plan = Plan::new(theatre, view, &self.knobs)?;
+        let dark = |e: usize| theatre.lamp.emitters[e].radiance == [0.0; 3];
+        let emitters = theatre.lamp.emitters.len();
+        for (name, count) in [
+            ("planes", plan.planes.len()),
+            ("planes_off_beam", theatre.planes.len() - plan.planes.len()),
+            ("emitters_dark", (0..emitters).filter(|e| dark(*e)).count()),
+        ] {
+            stats.counts.insert(name.into(), count as u64);
         }
-        let background = self.background.take().expect("made above");
-        stats.counts.insert("background_reused".into(), u64::from(reused));
-        let drawn = self.bands(theatre, view, white, &frame, &background, &mut take);
-        self.background = Some(background);
-        stats.counts.insert("bands".into(), self.bands.len() as u64);
-        drawn?;
-        step(&mut stats, "pixels");
+        step(&mut stats, "plan");
+        self.tables.prepare(theatre, &plan, &mut stats);
+        self.device_tables.prepare(&self.passes, theatre, &plan)?;
+        step(&mut stats, "tables");
+        let kept = self.background.take().filter(|(b, _)| b.serves(theatre, view));
+        stats.counts.insert("background_reused".into(), u64::from(kept.is_some()));
+        let (mut background, screen) = kept.unwrap_or_else(|| (Background::new(theatre, view), None));
+        let screen = match screen {
+            Some(screen) => screen,
+            None => DeviceScreen::new(&self.passes.gpu, &background, view.size)?,
+        };
+        if let Sink::Display { white, .. } = sink
+            && view.skip
+        {
+            background.encode(white);
+        }
+        step(&mut stats, "background");
+        let display = matches!(sink, Sink::Display { .. });
+        // The share of an emitter without radiance is zero: any visibility will do for the picture.
+        let idle = |e: usize| display && view.skip && dark(e);
+        let active: Vec<bool> = plan.lookups.iter().map(|l| !idle(plan.pieces[l.piece].emitter)).collect();
+        let tiles = Tiles { theatre, view, plan: &plan, tables: self.tables.of(theatre, &plan) };
+        let stage = Stage::new(&tiles, !display, &active);
+        let work = Work::new(theatre, view.size, &plan, &stage, &active);
+        let coloured = matches!(theatre.ambient, Ambient::Paper { s: [r, g, b], .. } if r != g || g != b);
+        let shades = if coloured { 3 } else { plan.channels.max(screen.share_channels) };
+        let paper = matches!(theatre.ambient, Ambient::Paper { .. });
+        let job = Job {
+            work: &work,
+            weights: self.knobs.weights,
+            screen: &screen,
+            rest: background.rest,
+            shades,
+            own_channels: if paper && plan.planes.len() > 1 { shades } else { 0 },
+        };
+        let runs = work.batches(self.most[0], self.most[1]);
+        stats.counts.insert("batches".into(), runs.iter().map(|run| run.len() as u64).sum());
+        count(&stage, &work, &mut stats);
+        step(&mut stats, "tiles");
+        let mut steps = [0.0; 3];
+        for (k, run) in runs.iter().enumerate() {
+            let first = (k == 0).then_some(&background);
+            self.run(&job, run, first, &mut sink, &mut steps)?;
+        }
+        if let (Sink::Display { out, .. }, []) = (&mut sink, &runs[..]) {
+            fill(&stage, &background, view.size[0], out);
+        }
+        for (name, ms) in ["record", "host", "device"].iter().zip(steps) {
+            stats.steps_ms.push(((*name).into(), ms));
+        }
+        self.background = Some((background, Some(screen)));
         Ok(stats)
     }
 
-    /// Builds the tables of masks that are new and forgets those that are gone; tells how many were built.
-    fn build_tables(&mut self, theatre: &Theatre, plan: &Plan) -> Result<u64, RenderError> {
-        let needed = |id: u64| plan.planes.iter().any(|p| theatre.planes[*p].mask.id == id);
-        self.tables.retain(|t| needed(t.mask.id));
-        let mut built = 0;
-        for p in &plan.planes {
-            let mask = &theatre.planes[*p].mask;
-            if !self.tables.iter().any(|t| t.mask.id == mask.id) {
-                let table = self.build_table(mask)?;
-                self.tables.push(table);
-                built += 1;
-            }
-        }
-        Ok(built)
-    }
-
-    fn build_table(&self, mask: &Arc<Mask>) -> Result<Table, RenderError> {
-        let most = self.gpu.device.limits().max_texture_dimension_2d as usize;
-        if mask.width > most || mask.height >= most {
-            return Err(RenderError::Gpu(format!(
-                "a mask of {}x{} texels: {} holds {most}x{}; use --backend cpu",
-                mask.width,
-                mask.height,
-                self.gpu.adapter(),
-                most - 1
-            )));
-        }
-        let texture = |height: usize, format, usage| {
-            self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("mask"),
-                size: wgpu::Extent3d {
-                    width: mask.width as u32,
-                    height: height as u32,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
-        let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
-        let (format, bytes): (_, &[u8]) = match &mask.texels {
-            Texels::U8(t) => (wgpu::TextureFormat::R8Uint, t),
-            Texels::U16(t) => (wgpu::TextureFormat::R16Uint, bytemuck::cast_slice(t)),
-        };
-        let texel = bytes.len() / (mask.width * mask.height * mask.channels);
-        let params = self.gpu.uniform(
-            "table",
-            &TableParams {
-                width: mask.width as u32,
-                height: mask.height as u32,
-                max_code: mask.max_code(),
-                unused: 0,
-            },
-        );
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let mut channels = Vec::new();
-        for plane in bytes.chunks_exact(mask.width * mask.height * texel) {
-            let codes = texture(mask.height, format, sampled | wgpu::TextureUsages::COPY_DST);
-            self.gpu.queue.write_texture(
-                codes.as_image_copy(),
-                plane,
-                wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some((mask.width * texel) as u32),
-                    rows_per_image: None,
-                },
-                codes.size(),
-            );
-            let table = texture(
-                mask.height + 1,
-                wgpu::TextureFormat::R32Uint,
-                sampled | wgpu::TextureUsages::STORAGE_BINDING,
-            );
-            let (codes, table) =
-                (codes.create_view(&Default::default()), table.create_view(&Default::default()));
-            let bind = self.gpu.bind(
-                &self.table,
-                &[
-                    params.as_entire_binding(),
-                    wgpu::BindingResource::TextureView(&codes),
-                    wgpu::BindingResource::TextureView(&table),
-                ],
-            );
-            dispatch(&mut encoder, &self.table, &bind, [(mask.width as u32).div_ceil(64), 1]);
-            channels.push(table);
-        }
-        self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.check()?;
-        Ok(Table { mask: mask.clone(), channels })
-    }
-
-    fn bands(
+    /// Draws one run of tiles. The host writes all tiles that the device does not shade meanwhile, where it is given the `background`.
+    fn run(
         &mut self,
-        theatre: &Theatre,
-        view: &View,
-        white: Option<f64>,
-        frame: &FramePlan,
-        background: &Background,
-        take: &mut dyn FnMut(usize, usize, &[u32]),
+        job: &Job,
+        run: &[Batch],
+        background: Option<&Background>,
+        sink: &mut Sink,
+        steps: &mut [f64; 3],
     ) -> Result<(), RenderError> {
-        let (plan, [w, h]) = (&frame.plan, view.size);
-        let emitters = theatre.lamp.emitters.len();
-        let paper = matches!(theatre.ambient, Ambient::Paper { .. });
-        let coloured = matches!(theatre.ambient, Ambient::Paper { s: [r, g, b], .. } if r != g || g != b);
-        let share_channels = background.share_channels();
-        let shades = if coloured { 3 } else { plan.channels.max(share_channels) };
-        let own_channels = if paper && plan.planes.len() > 1 { shades } else { 0 };
-        let outputs = if white.is_some() { 1 } else { 3 + emitters * plan.channels };
-        // Words a row of each buffer; the largest one decides how many rows a band has.
-        let lit = background.lit.len() * w;
-        let share = emitters * share_channels * w;
-        let words = [
-            frame.sums * plan.sub,
-            emitters * plan.channels * w,
-            emitters * w,
-            plan.planes.len() * own_channels * w,
-            outputs * w,
-        ];
-        let largest = words.iter().chain([&lit, &share]).max().copied().unwrap_or(1).max(1);
-        let most = self.most_words;
-        let rows = (most / largest).min(65535).min(h);
-        if rows == 0 {
-            return Err(RenderError::Gpu(format!("one row of {largest} words is over the limit of {most}")));
-        }
-        if self.bands.first().is_none_or(|b| b.rows > rows) {
-            self.bands = (0..h)
-                .step_by(rows)
-                .map(|first| self.upload_band(background, emitters, w, first, rows.min(h - first)))
-                .collect();
-        }
-        let words = words.map(|n| (n * self.bands[0].rows) as u64);
-        self.reserve(words);
-        let lookups = self.gpu.storage("lookups", &frame.lookups_for(self.bands[0].rows));
-        let windows = self.gpu.storage("windows", &frame.windows);
-        let mut tables: Vec<u32> = Srgb::get().entries().to_vec();
-        tables.extend(plan.planes.iter().map(|p| (plan.distance_m[*p] as f32).to_bits()));
-        tables.push(0);
-        let tables = self.gpu.storage("tables", &tables);
-        let Some(work) = &self.work else { unreachable!("reserved above") };
-        for band in &self.bands {
-            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            encoder.clear_buffer(&work.own, 0, None);
-            let mut before = usize::MAX;
-            for (p, piece) in plan.pieces.iter().enumerate() {
-                let dark = theatre.lamp.emitters[piece.emitter].radiance == [0.0; 3];
-                // The share of an emitter without radiance is zero: any visibility will do for the picture.
-                let range = if dark && white.is_some() && view.skip { 0..0 } else { frame.pieces[p].clone() };
-                for l in range.clone() {
-                    self.combine(&mut encoder, frame, l, band, &windows, work);
-                }
-                let [z, side] = [piece.centre_m.z.abs(), 1.0 / piece.centre_m.z.abs()];
-                let at = crate::project::pixel_m(&theatre.screen, view.size, 0.0, 0.0);
-                let params = VisibilityParams {
-                    width: w as u32,
-                    rows: band.rows as u32,
-                    first: band.first as u32,
-                    sub: plan.sub as u32,
-                    start: range.start as u32,
-                    end: range.end as u32,
-                    channels: plan.channels as u32,
-                    emitter: piece.emitter as u32,
-                    emitters: emitters as u32,
-                    rest: background.rest as u32,
-                    share_channels: share_channels as u32,
-                    own_channels: own_channels as u32,
-                    by_irradiance: u32::from(self.knobs.weights == Weights::Irradiance),
-                    is_first: u32::from(before != piece.emitter),
-                    step_x: (theatre.screen.width_m / w as f64 / z) as f32,
-                    step_y: (-theatre.screen.height_m / h as f64 / z) as f32,
-                    origin_x: ((at.x - piece.centre_m.x) / z) as f32,
-                    origin_y: ((at.y - piece.centre_m.y) / z) as f32,
-                    half_x: (0.5 * piece.size_m[0] * side) as f32,
-                    half_y: (0.5 * piece.size_m[1] * side) as f32,
-                };
-                before = piece.emitter;
-                let params = self.gpu.uniform("piece", &params);
-                let bind = self.gpu.bind(
-                    &self.visibility,
-                    &[
-                        params.as_entire_binding(),
-                        lookups.as_entire_binding(),
-                        windows.as_entire_binding(),
-                        work.sums.as_entire_binding(),
-                        work.visibility.as_entire_binding(),
-                        work.weights.as_entire_binding(),
-                        band.share.as_entire_binding(),
-                        work.own.as_entire_binding(),
-                    ],
-                );
-                dispatch(&mut encoder, &self.visibility, &bind, [(w as u32).div_ceil(64), band.rows as u32]);
+        let clock = Instant::now();
+        let (work, plan) = (job.work, job.work.plan);
+        let Some(last) = run.last() else { return Ok(()) };
+        let gpu = self.passes.gpu.clone();
+        let emitters = work.theatre.lamp.emitters.len();
+        let height = 2 * last.tiles.len().div_ceil(ACROSS);
+        self.visibility.begin(&gpu, height, emitters * plan.channels);
+        self.own.begin(&gpu, height, (plan.planes.len() * job.own_channels).max(1));
+        let answers = match sink {
+            Sink::Display { .. } => 1,
+            Sink::Radiance(planes) => planes.len(),
+        };
+        let layer = (height * CELLS * 16) as u64;
+        for (k, batch) in run.iter().enumerate() {
+            let mut script = work.script(batch);
+            self.words.write(&gpu, script.words.padded());
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            self.combine(&mut encoder, job, &script);
+            self.add(&mut encoder, job, batch, &script);
+            if k + 1 < run.len() {
+                gpu.queue.submit([encoder.finish()]);
+                gpu.check()?;
+                continue;
             }
-            let (k_d, s) = match theatre.ambient {
-                Ambient::Paper { k_d_m, s } => (k_d_m as f32, s.map(|s| s as f32)),
-                _ => (1.0, [0.0; 3]),
-            };
-            let params = ShadeParams {
-                width: w as u32,
-                rows: band.rows as u32,
-                channels: plan.channels as u32,
-                emitters: emitters as u32,
-                rest: background.rest as u32,
-                share_channels: share_channels as u32,
-                lit_channels: background.lit.len() as u32,
-                planes: plan.planes.len() as u32,
-                own_channels: own_channels as u32,
-                paper: u32::from(paper),
-                display: u32::from(white.is_some()),
-                scale: (1.0 / white.unwrap_or(1.0)) as f32,
-                k_d,
-                s_r: s[0],
-                s_g: s[1],
-                s_b: s[2],
-            };
-            let params = self.gpu.uniform("shade", &params);
-            let bind = self.gpu.bind(
-                &self.shade,
-                &[
-                    params.as_entire_binding(),
-                    work.visibility.as_entire_binding(),
-                    work.weights.as_entire_binding(),
-                    band.lit.as_entire_binding(),
-                    band.share.as_entire_binding(),
-                    work.own.as_entire_binding(),
-                    tables.as_entire_binding(),
-                    work.output.device.as_entire_binding(),
-                ],
-            );
-            dispatch(&mut encoder, &self.shade, &bind, [(w as u32).div_ceil(64), band.rows as u32]);
-            let bytes = (outputs * w * band.rows * 4) as u64;
-            self.gpu.finish(encoder, &work.output, bytes, |read| {
-                take(band.first, band.rows, bytemuck::cast_slice(&read[..bytes as usize]));
+            self.visibility.settle(&mut encoder);
+            self.own.settle(&mut encoder);
+            self.answers.reserve(&gpu, "answers", [CELLS, height], Pass::Codes.format());
+            let host = self.host.reserve(&gpu, layer * answers as u64);
+            for a in 0..answers {
+                let texture = match (a, &*sink) {
+                    (0..3, _) => {
+                        self.shade(&mut encoder, job, batch, &script, a, sink);
+                        self.answers.texture().as_image_copy()
+                    }
+                    _ => self.visibility.copy_of(a - 3),
+                };
+                encoder.copy_texture_to_buffer(
+                    texture,
+                    wgpu::TexelCopyBufferInfo {
+                        buffer: &host,
+                        layout: wgpu::TexelCopyBufferLayout {
+                            offset: layer * a as u64,
+                            bytes_per_row: Some(16 * CELLS as u32),
+                            rows_per_image: None,
+                        },
+                    },
+                    wgpu::Extent3d {
+                        width: CELLS as u32,
+                        height: height as u32,
+                        depth_or_array_layers: 1,
+                    },
+                );
+            }
+            let pending = gpu.submit(encoder, &host, layer * answers as u64)?;
+            steps[0] += clock.elapsed().as_secs_f64() * 1e3;
+            let clock = Instant::now();
+            let width = work.size[0];
+            if let (Sink::Display { out, .. }, Some(background)) = (&mut *sink, background) {
+                fill(work.stage, background, width, out);
+            }
+            steps[1] += clock.elapsed().as_secs_f64() * 1e3;
+            let clock = Instant::now();
+            let tiles = &work.stage.shaded[batch.tiles.clone()];
+            pending.wait(|bytes| {
+                let words: &[u32] = bytemuck::cast_slice(bytes);
+                match sink {
+                    Sink::Display { out, .. } => scatter(words, tiles, width, out),
+                    Sink::Radiance(planes) => {
+                        for (plane, words) in planes.iter_mut().zip(words.chunks_exact(layer as usize / 4)) {
+                            scatter(words, tiles, width, bytemuck::cast_slice_mut(plane));
+                        }
+                    }
+                }
             })?;
+            steps[2] += clock.elapsed().as_secs_f64() * 1e3;
         }
         Ok(())
     }
 
-    /// The row pass of look-up `l`, channel by channel.
-    fn combine(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        frame: &FramePlan,
-        l: usize,
-        band: &Band,
-        windows: &wgpu::Buffer,
-        work: &Work,
-    ) {
-        let (pass, lookup) = (&frame.passes[l], &frame.lookups[l]);
-        let Some(table) = self.tables.iter().find(|t| t.mask.id == pass.mask) else { return };
-        let rows = (band.rows * frame.plan.sub) as u32;
-        for (c, view) in table.channels.iter().enumerate() {
+    /// The rows of every box of a batch.
+    fn combine(&mut self, encoder: &mut wgpu::CommandEncoder, job: &Job, script: &Script) {
+        let work = job.work;
+        let rows = work.rows();
+        let height = script.shelves.last().map_or(1, |s| s.range.end) * rows;
+        let target = [work::SHELF * 32, height];
+        self.combined.reserve(&self.passes.gpu, "combined", target, Pass::Combine.format());
+        for shelves in &script.shelves {
+            let mask = &work.theatre.planes[shelves.plane].mask;
+            let wide = work.plan.wide[shelves.plane];
+            let shift = work.plan.lookups.iter().find(|l| l.plane == shelves.plane).map_or(32, |l| l.shift);
+            let constants =
+                vec![("REACH", work.reach[1] as u32), ("ROWS", rows as u32), ("WIDE", u32::from(wide))];
             let params = RowsParams {
-                first: (band.first * frame.plan.sub) as u32,
-                rows,
-                from_x: lookup.from_x,
-                to_x: lookup.to_x,
-                height: pass.height as u32,
-                reach: frame.plan.lookups[l].y.reach as u32,
-                windows: pass.windows,
-                count: pass.count as u32,
-                sums: (lookup.sums + c as u32 * lookup.channel)
-                    * self.bands[0].rows as u32
-                    * frame.plan.sub as u32,
-                interior: pass.interior,
-                scale: pass.scale,
-                unused: 0,
+                blocks: script.blocks,
+                width: mask.width as u32,
+                height: mask.height as u32,
+                shift,
             };
-            let params = self.gpu.uniform("rows", &params);
-            let bind = self.gpu.bind(
-                &self.rows,
-                &[
-                    params.as_entire_binding(),
-                    wgpu::BindingResource::TextureView(view),
-                    windows.as_entire_binding(),
-                    work.sums.as_entire_binding(),
-                ],
+            let table = self.device_tables.of(mask, wide, shelves.channel);
+            let range = (shelves.range.start * rows) as u32..(shelves.range.end * rows) as u32;
+            let textures = [self.words.view(), table];
+            self.passes.run(
+                encoder,
+                (Pass::Combine, &constants),
+                &params,
+                &textures,
+                self.combined.view(),
+                range,
             );
-            dispatch(encoder, &self.rows, &bind, [rows.div_ceil(8), 1]);
         }
     }
 
-    fn upload_band(
-        &self,
-        background: &Background,
-        emitters: usize,
-        w: usize,
-        first: usize,
-        rows: usize,
-    ) -> Band {
-        let part = |plane: &[f32]| plane[first * w..(first + rows) * w].to_vec();
-        let lit: Vec<f32> = background.lit.iter().flat_map(|p| part(p)).collect();
-        let channels = background.share_channels();
-        let mut share = Vec::with_capacity(emitters * channels * rows * w);
+    /// Adds a batch's pieces to their emitters' visibilities, and to the planes' own shadows where they are asked for.
+    fn add(&mut self, encoder: &mut wgpu::CommandEncoder, job: &Job, batch: &Batch, script: &Script) {
+        let (work, plan) = (job.work, job.work.plan);
+        let height = 2 * batch.tiles.len().div_ceil(ACROSS) as u32;
+        let emitters = work.theatre.lamp.emitters.len();
+        let constants = |own: bool| -> Constants {
+            vec![
+                ("REACH", work.reach[0] as u32),
+                ("SUB", plan.sub as u32),
+                ("IRRADIANCE", u32::from(job.weights == Weights::Irradiance)),
+                ("OWN", u32::from(own)),
+            ]
+        };
         for e in 0..emitters {
-            for c in 0..channels {
-                match e == background.rest {
-                    true => share.resize(share.len() + rows * w, 0.0),
-                    false => share.extend(part(background.share(e, c))),
+            let of = |p: &usize| plan.pieces[*p].emitter == e;
+            let Some(first) = (0..plan.pieces.len()).find(of) else { continue };
+            let last = first + (first..plan.pieces.len()).filter(of).count();
+            let (from, to) = (first.max(batch.pieces.start), last.min(batch.pieces.end));
+            if from >= to {
+                continue;
+            }
+            let params = VisibilityParams {
+                tiles: script.tiles,
+                pieces: script.pieces,
+                lookups: script.lookups,
+                stride: script.stride,
+                count: batch.tiles.len() as u32,
+                begin: from as u32,
+                end: to as u32,
+                first: first as u32,
+                last: last as u32,
+                right: work.size[0] as u32 - 1,
+                bottom: work.size[1] as u32 - 1,
+                ends: u32::from(to == last),
+                shares_step: 1,
+                ..Default::default()
+            };
+            for c in 0..plan.channels {
+                let (before, target, goes_on) = self.visibility.turn(&self.passes.gpu, e * plan.channels + c);
+                let params = VisibilityParams { channel: c as u32, goes_on: u32::from(goes_on), ..params };
+                let textures = [self.words.view(), self.combined.view(), &before, &job.screen.view];
+                self.passes.run(encoder, (Pass::Add, &constants(false)), &params, &textures, &target, 0..height);
+            }
+            for k in 0..plan.planes.len() * job.own_channels {
+                let (plane, c) = (k / job.own_channels, k % job.own_channels);
+                let (before, target, goes_on) = self.own.turn(&self.passes.gpu, k);
+                let channel = c.min(job.screen.share_channels - 1);
+                let (shares, end) = match e == job.rest {
+                    true => (job.screen.lit_channels, (emitters - 1) * job.screen.share_channels),
+                    false => (job.screen.share_layer(e, job.rest), 1),
+                };
+                let params = VisibilityParams {
+                    // A grey scene's only channel answers for all.
+                    channel: c.min(plan.channels - 1) as u32,
+                    goes_on: u32::from(goes_on),
+                    plane: plane as u32,
+                    shares: (shares + channel) as u32,
+                    shares_end: (shares + end) as u32 + if e == job.rest { 0 } else { channel as u32 },
+                    shares_step: job.screen.share_channels as u32,
+                    rest: u32::from(e == job.rest),
+                    ..params
+                };
+                let textures = [self.words.view(), self.combined.view(), &before, &job.screen.view];
+                self.passes.run(encoder, (Pass::Add, &constants(true)), &params, &textures, &target, 0..height);
+            }
+        }
+    }
+
+    /// Shades a batch: codes, or channel `c` of the radiance.
+    fn shade(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        job: &Job,
+        batch: &Batch,
+        script: &Script,
+        c: usize,
+        sink: &Sink,
+    ) {
+        let (work, plan) = (job.work, job.work.plan);
+        let (k_d, s) = match work.theatre.ambient {
+            Ambient::Paper { k_d_m, s } => (k_d_m as f32, s.map(|s| s as f32)),
+            _ => (1.0, [0.0; 3]),
+        };
+        let (pass, white) = match sink {
+            Sink::Display { white, .. } => (Pass::Codes, *white),
+            Sink::Radiance(_) => (Pass::Radiance, 1.0),
+        };
+        let constants = vec![
+            ("EMITTERS", work.theatre.lamp.emitters.len() as u32),
+            ("REST", job.rest as u32),
+            ("CHANNELS", plan.channels as u32),
+            ("LIT_CHANNELS", job.screen.lit_channels as u32),
+            ("SHARE_CHANNELS", job.screen.share_channels as u32),
+            ("OWN_CHANNELS", job.own_channels as u32),
+            ("PLANES", plan.planes.len() as u32),
+            ("GREY", u32::from(job.shades == 1 && job.screen.lit_channels == 1)),
+            ("PAPER", u32::from(matches!(work.theatre.ambient, Ambient::Paper { .. }))),
+        ];
+        let params = ShadeParams {
+            tiles: script.tiles,
+            stride: script.stride,
+            count: batch.tiles.len() as u32,
+            right: work.size[0] as u32 - 1,
+            bottom: work.size[1] as u32 - 1,
+            channel: c as u32,
+            distances: script.distances,
+            scale: (1.0 / white) as f32,
+            k_d,
+            s: [s[0], s[1], s[2], 0.0],
+            ..Default::default()
+        };
+        let textures =
+            [self.words.view(), self.visibility.all(), self.own.all(), &job.screen.view, &self.bins];
+        let height = 2 * batch.tiles.len().div_ceil(ACROSS) as u32;
+        self.passes.run(encoder, (pass, &constants), &params, &textures, self.answers.view(), 0..height);
+    }
+}
+
+fn count(stage: &Stage, work: &Work, stats: &mut Stats) {
+    let [w, h] = work.size;
+    let across = w.div_ceil(TILE[0]);
+    let mut pixels = [0u64; 3];
+    for (k, kind) in stage.kinds.iter().enumerate() {
+        let [x, y] = [k % across * TILE[0], k / across * TILE[1]];
+        let at = match kind {
+            Kind::Lit => 0,
+            Kind::Black => 1,
+            Kind::Shade => 2,
+        };
+        pixels[at] += (TILE[0].min(w - x) * TILE[1].min(h - y)) as u64;
+    }
+    let sub = work.plan.sub;
+    let boxes = stage.boxes() * (work.plan.channels * TILE[0] * TILE[1] * sub * sub) as u64;
+    for (name, count) in [
+        ("pixels_lit_copied", pixels[0]),
+        ("pixels_dark", pixels[1]),
+        ("pixels_penumbra", pixels[2]),
+        ("boxes", boxes),
+    ] {
+        stats.counts.insert(name.into(), count);
+    }
+}
+
+/// Writes the tiles that are not shaded: the lit screen's codes, or black.
+fn fill(stage: &Stage, background: &Background, width: usize, out: &mut [u32]) {
+    let across = width.div_ceil(TILE[0]);
+    let rows = out.par_chunks_mut(TILE[1] * width).zip(stage.kinds.par_chunks(across)).enumerate();
+    rows.for_each(|(j, (out, kinds))| {
+        for (i, row) in out.chunks_exact_mut(width).enumerate() {
+            let first = (j * TILE[1] + i) * width;
+            for (pixels, kind) in row.chunks_mut(TILE[0]).zip(kinds).enumerate().map(|(t, (p, k))| ((t, p), k)) {
+                let (t, pixels) = pixels;
+                let at = first + t * TILE[0];
+                match kind {
+                    Kind::Lit => background.copy_lit(at..at + pixels.len(), pixels),
+                    Kind::Black => pixels.fill(pack(0, 0, 0)),
+                    Kind::Shade => {}
                 }
             }
         }
-        Band { first, rows, lit: self.gpu.storage("lit", &lit), share: self.gpu.storage("share", &share) }
-    }
-
-    /// Makes the working buffers at least this large.
-    fn reserve(&mut self, words: [u64; 5]) {
-        if self.work.as_ref().is_some_and(|w| w.words.iter().zip(&words).all(|(have, need)| have >= need)) {
-            return;
-        }
-        let buffer = |label: &str, words: u64| {
-            self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: 4 * words.max(4),
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        self.work = Some(Work {
-            words,
-            sums: buffer("sums", words[0]),
-            visibility: buffer("visibility", words[1]),
-            weights: buffer("weights", words[2]),
-            own: buffer("own", words[3]),
-            output: self.gpu.output("output", 4 * words[4]),
-        });
-    }
+    });
 }
 
-fn dispatch(
-    encoder: &mut wgpu::CommandEncoder,
-    pipeline: &wgpu::ComputePipeline,
-    bind: &wgpu::BindGroup,
-    [x, y]: [u32; 2],
-) {
-    let mut pass = encoder.begin_compute_pass(&Default::default());
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, bind, &[]);
-    pass.dispatch_workgroups(x, y, 1);
-}
-
-impl FramePlan {
-    fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
-        plan::refuse_on_gpu(theatre)?;
-        let plan = Plan::new(theatre, view, knobs)?;
-        let (mut lookups, mut passes, mut windows) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut pieces, mut most) = (Vec::new(), 0);
-        // The plan groups look-ups by plane; a piece's must follow each other here.
-        let mut order: Vec<usize> = (0..plan.lookups.len()).collect();
-        order.sort_by_key(|l| plan.lookups[*l].piece);
-        let sorted: Vec<_> = order.iter().map(|l| plan.lookups[*l].clone()).collect();
-        let plan = Plan { lookups: sorted, ..plan };
-        for p in 0..plan.pieces.len() {
-            let start = lookups.len();
-            let mut sums = 0;
-            for lookup in plan.lookups.iter().filter(|l| l.piece == p) {
-                let mask = &theatre.planes[lookup.plane].mask;
-                let columns = lookup.x.start.len();
-                let [from, to] = lookup.x.touched(0..columns, mask.width);
-                let longest =
-                    lookup.x.start.iter().zip(&lookup.x.stop).map(|(a, b)| b - a).max().unwrap_or(0);
-                let longest = f64::from(longest) + lookup.x.reach as f64 + 2.0;
-                let code = f64::from(mask.max_code());
-                let scale = 2f64.powf((2f64.powi(32) / (code * longest)).log2().floor());
-                let stride = to - from + 1;
-                lookups.push(GpuLookup {
-                    windows: windows.len() as u32,
-                    count: columns as u32,
-                    reach: lookup.x.reach as u32,
-                    sums: sums as u32,
-                    channel: if mask.channels == 3 { stride as u32 } else { 0 },
-                    from_x: from as u32,
-                    to_x: to as u32,
-                    plane: plan.planes.iter().position(|q| *q == lookup.plane).unwrap_or(0) as u32,
-                    interior: (1.0 / lookup.x.width) as f32,
-                    norm: (1.0 / (scale * code)) as f32,
-                });
-                push_windows(&lookup.x, &mut windows);
-                passes.push(RowPass {
-                    mask: mask.id,
-                    height: mask.height,
-                    windows: windows.len() as u32,
-                    count: lookup.y.start.len(),
-                    interior: (1.0 / lookup.y.width) as f32,
-                    scale: scale as f32,
-                });
-                push_windows(&lookup.y, &mut windows);
-                sums += stride * mask.channels;
+/// Puts answers, four pixels of a column together, where they belong.
+fn scatter(words: &[u32], tiles: &[Tile], width: usize, out: &mut [u32]) {
+    let rows = out.par_chunks_mut(TILE[1] * width).enumerate();
+    rows.for_each(|(j, out)| {
+        let first = tiles.partition_point(|t| t.home[1] < j * TILE[1]);
+        let here = tiles[first..].iter().take_while(|t| t.home[1] == j * TILE[1]);
+        for (k, tile) in (first..).zip(here) {
+            let count = TILE[0].min(width - tile.home[0]);
+            for (i, row) in out.chunks_exact_mut(width).enumerate() {
+                let cell = (k / ACROSS * 2 + i / 4) * CELLS + k % ACROSS * TILE[0];
+                let answers = words[4 * cell..].chunks_exact(4).map(|four| four[i % 4]);
+                row[tile.home[0]..][..count].iter_mut().zip(answers).for_each(|(out, a)| *out = a);
             }
-            pieces.push(start..lookups.len());
-            most = most.max(sums);
         }
-        Ok(Self { plan, lookups, passes, pieces, windows, sums: most })
-    }
-
-    /// Look-ups with the places of their sums for bands of `rows` rows.
-    fn lookups_for(&self, rows: usize) -> Vec<GpuLookup> {
-        let per = (rows * self.plan.sub) as u32;
-        self.lookups
-            .iter()
-            .map(|l| GpuLookup { sums: l.sums * per, channel: l.channel * per, ..*l })
-            .collect()
-    }
-}
-
-/// Appends starts, seconds and 2 · reach weights, each for all windows: texel `start + k` weighs `weight[k]`, texels from
-/// `start + reach` to `second` weigh 1 / width, texel `second + k` weighs `weight[reach + k]`.
-fn push_windows(windows: &Windows, out: &mut Vec<u32>) {
-    let (count, reach) = (windows.start.len(), windows.reach as i32);
-    let second = |i: usize| windows.stop[i].max(windows.start[i] + reach);
-    out.extend(windows.start.iter().map(|s| s.cast_unsigned()));
-    out.extend((0..count).map(|i| second(i).cast_unsigned()));
-    let weight = |i: usize, t: i32| (windows.overlap(i, i64::from(t)) / windows.width) as f32;
-    for k in 0..reach {
-        out.extend((0..count).map(|i| weight(i, windows.start[i] + k).to_bits()));
-    }
-    for k in 0..reach {
-        out.extend((0..count).map(|i| match second(i) + k {
-            t if t < windows.stop[i] + reach => weight(i, t).to_bits(),
-            _ => 0,
-        }));
-    }
+    });
 }
 
 impl Renderer for OnGpu {
     fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
+        plan::check_view(theatre, view)?;
         let pixels = view.size[0] * view.size[1];
         let kind = if self.knobs.weights == Weights::Area { "Vgeo" } else { "Virr" };
         let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
         let emitters = theatre.lamp.emitters.len();
-        let mut planes: Vec<Vec<f32>> = Vec::new();
-        let stats = self.draw(theatre, view, None, |first, rows, words| {
-            let n = rows * view.size[0];
-            planes.resize_with(words.len() / n, || vec![0.0; pixels]);
-            for (plane, words) in planes.iter_mut().zip(words.chunks_exact(n)) {
-                let to = &mut plane[first * view.size[0]..][..n];
-                to.copy_from_slice(bytemuck::cast_slice(words));
-            }
-        })?;
-        let channels = (planes.len() - 3) / emitters;
+        // All puppets may be off the beam: then one channel answers for the three layers.
+        let channels = Plan::new(&shadow_map::seen(theatre, &self.knobs), view, &self.knobs)?.channels;
+        let mut planes = vec![vec![0f32; pixels]; 3 + emitters * channels];
+        let stats = self.draw(theatre, view, Sink::Radiance(&mut planes))?;
         let mut planes = planes.into_iter();
         let radiance = [(); 3].map(|()| planes.next().unwrap_or_default());
         let visibility: Vec<_> = planes.collect();
@@ -711,6 +506,7 @@ impl Renderer for OnGpu {
         white: f64,
         out: &mut [u32],
     ) -> Result<Stats, RenderError> {
+        plan::check_view(theatre, view)?;
         if out.len() != view.size[0] * view.size[1] {
             let [w, h] = view.size;
             return Err(RenderError::View(format!("{} pixels given for {w}x{h}", out.len())));
@@ -718,13 +514,11 @@ impl Renderer for OnGpu {
         if !(white.is_finite() && white > 0.0) {
             return Err(RenderError::View(format!("white = {white}: a radiance above 0")));
         }
-        self.draw(theatre, view, Some(white), |first, rows, words| {
-            out[first * view.size[0]..][..rows * view.size[0]].copy_from_slice(words);
-        })
+        self.draw(theatre, view, Sink::Display { white, out })
     }
 
     fn adapter(&self) -> String {
-        self.gpu.adapter()
+        self.passes.gpu.adapter()
     }
 }
 

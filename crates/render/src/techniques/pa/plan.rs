@@ -91,10 +91,6 @@ pub fn refuse_on_gpu(theatre: &Theatre) -> Result<(), RenderError> {
     if let Some(i) = theatre.planes.iter().position(is_tilted) {
         return Err(refuse(format!("puppets[{i}].tilt_deg = {:?}: {elsewhere}", theatre.planes[i].tilt_deg)));
     }
-    let disk = |e: &kelir_scene::Emitter| matches!(e.shape, EmitterShape::Disk { .. });
-    if let Some(k) = theatre.lamp.emitters.iter().position(disk) {
-        return Err(refuse(format!("lamp.emitters[{k}].shape = \"disk\": {elsewhere}")));
-    }
     match theatre.ambient {
         Ambient::Dome { .. } => Err(refuse(format!("ambient.model = \"dome\": {elsewhere}"))),
         _ => Ok(()),

@@ -1,7 +1,8 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
-use kelir_scene::{Albedo, Emitter, EmitterShape, Exposure, Lamp, Plane, Screen};
+use kelir_scene::{Albedo, Emitter, EmitterShape, Exposure, Lamp, Mask, Plane, Screen, Texels};
+use std::sync::Arc;
 
 use super::*;
 use crate::oracle::{Point, geometric};
@@ -79,7 +80,7 @@ fn on_gpu(shaders: &Shaders, knobs: Knobs) -> OnGpu {
 /// A shader that is 3 % off.
 fn wrong() -> Shaders {
     let right = Shaders::default();
-    let visibility = right.visibility.replace("min(mean * l.norm, 1.0)", "min(mean * l.norm * 0.97, 1.0)");
+    let visibility = right.visibility.replace("between(left, middle)) * scale.y;", "between(left, middle)) * scale.y * 0.97;");
     assert_ne!(visibility, right.visibility);
     Shaders { visibility, ..right }
 }
@@ -181,98 +182,73 @@ fn gpu_draws_an_empty_stage() {
     }
 }
 
-/// Bands of rows, as large images need, change no bit; nor does drawing a second time from what was kept.
+/// Batches of tiles and pieces, as large images and many pieces need, change no bit; nor does drawing a second time from what was kept.
 #[test]
-fn bands_change_nothing() {
+fn batches_change_nothing() {
     let (scene, view) = (&scenes()[3], view(Pixel::Area));
     let mut whole = on_gpu(&Shaders::default(), Knobs::default());
-    let mut banded = on_gpu(&Shaders::default(), Knobs::default());
-    banded.most_words = 40_000;
+    let mut batched = on_gpu(&Shaders::default(), Knobs::default());
+    batched.most = [70, 256];
     let one = whole.radiance(scene, &view).unwrap();
-    let many = banded.radiance(scene, &view).unwrap();
-    assert!(one.stats.counts["bands"] == 1 && many.stats.counts["bands"] > 3);
+    let many = batched.radiance(scene, &view).unwrap();
+    assert!(one.stats.counts["batches"] == 1 && many.stats.counts["batches"] > 5);
     assert_eq!(one.radiance, many.radiance);
     let again = whole.radiance(scene, &view).unwrap();
     assert_eq!(one.radiance, again.radiance);
     assert_eq!((again.stats.counts["tables_built"], again.stats.counts["background_reused"]), (0, 1));
-    banded.most_words = 100;
-    assert!(banded.radiance(scene, &view).is_err());
 }
 
 #[test]
 fn structs_are_laid_out_as_the_shaders_expect() {
+    use super::tables::TableParams;
     use crate::gpu::tests::same_layout;
     let s = Shaders::default();
     same_layout!(&s.table, "Params", TableParams { width, height, max_code, unused });
-    same_layout!(
-        &s.rows,
-        "Params",
-        RowsParams {
-            first,
-            rows,
-            from_x,
-            to_x,
-            height,
-            reach,
-            windows,
-            count,
-            sums,
-            interior,
-            scale,
-            unused
-        }
-    );
+    same_layout!(&s.rows, "Params", RowsParams { blocks, width, height, shift });
     same_layout!(
         &s.visibility,
         "Params",
         VisibilityParams {
-            width,
-            rows,
-            first,
-            sub,
-            start,
+            tiles,
+            pieces,
+            lookups,
+            stride,
+            count,
+            begin,
             end,
-            channels,
-            emitter,
-            emitters,
+            first,
+            last,
+            channel,
+            right,
+            bottom,
+            goes_on,
+            ends,
+            plane,
+            shares,
+            shares_end,
+            shares_step,
             rest,
-            share_channels,
-            own_channels,
-            by_irradiance,
-            is_first,
-            step_x,
-            step_y,
-            origin_x,
-            origin_y,
-            half_x,
-            half_y,
+            unused,
         }
-    );
-    same_layout!(
-        &s.visibility,
-        "Lookup",
-        GpuLookup { windows, count, reach, sums, channel, from_x, to_x, plane, interior, norm }
     );
     same_layout!(
         &s.shade,
         "Params",
         ShadeParams {
-            width,
+            tiles,
+            stride,
+            count,
+            right,
+            bottom,
+            channel,
+            distances,
+            columns,
             rows,
-            channels,
-            emitters,
-            rest,
-            share_channels,
-            lit_channels,
-            planes,
-            own_channels,
-            paper,
-            display,
             scale,
             k_d,
-            s_r,
-            s_g,
-            s_b,
+            unused,
+            s,
+            dome,
         }
     );
 }

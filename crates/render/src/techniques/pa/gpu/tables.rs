@@ -1,0 +1,116 @@
+//! Summed-area tables on the device, kept while their masks are.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use kelir_scene::{Mask, Texels, Theatre};
+
+use super::super::plan::Plan;
+use super::passes::Passes;
+use crate::RenderError;
+use crate::gpu::Gpu;
+
+/// The shader's `Params`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+pub struct TableParams {
+    pub width: u32,
+    pub height: u32,
+    pub max_code: u32,
+    pub unused: u32,
+}
+
+/// Tables of every channel of a mask.
+struct Table {
+    mask: Arc<Mask>,
+    wide: bool,
+    channels: Vec<wgpu::TextureView>,
+}
+
+/// All tables.
+#[derive(Default)]
+pub struct DeviceTables(Vec<Table>);
+
+impl DeviceTables {
+    /// Builds the tables of masks that are new and forgets those that are gone.
+    pub fn prepare(&mut self, passes: &Passes, theatre: &Theatre, plan: &Plan) -> Result<(), RenderError> {
+        let serves = |t: &Table, p: usize| t.mask.id == theatre.planes[p].mask.id && t.wide == plan.wide[p];
+        self.0.retain(|t| plan.planes.iter().any(|p| serves(t, *p)));
+        for &p in &plan.planes {
+            if !self.0.iter().any(|t| serves(t, p)) {
+                self.0.push(build(passes, &theatre.planes[p].mask, plan.wide[p])?);
+            }
+        }
+        Ok(())
+    }
+
+    /// The table of channel `c` of `mask`.
+    pub fn of(&self, mask: &Mask, wide: bool, c: usize) -> &wgpu::TextureView {
+        let table = self.0.iter().find(|t| t.mask.id == mask.id && t.wide == wide);
+        let channels = &table.expect("prepared for this plan").channels;
+        &channels[c.min(channels.len() - 1)]
+    }
+}
+
+fn build(passes: &Passes, mask: &Arc<Mask>, wide: bool) -> Result<Table, RenderError> {
+    let gpu = &passes.gpu;
+    let most = gpu.device.limits().max_texture_dimension_2d as usize;
+    if mask.width >= most || mask.height >= most {
+        return Err(RenderError::Gpu(format!(
+            "a mask of {}x{} texels: {} holds {most}x{most} sums; use --backend cpu",
+            mask.width,
+            mask.height,
+            gpu.adapter(),
+        )));
+    }
+    let texture = |gpu: &Gpu, more: usize, format, usage| {
+        gpu.texture("table", [mask.width + more, mask.height + more, 1], format, usage)
+    };
+    let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
+    let (format, bytes): (_, &[u8]) = match &mask.texels {
+        Texels::U8(t) => (wgpu::TextureFormat::R8Uint, t),
+        Texels::U16(t) => (wgpu::TextureFormat::R16Uint, bytemuck::cast_slice(t)),
+    };
+    let texel = bytes.len() / (mask.width * mask.height * mask.channels);
+    let params = gpu.uniform(
+        "table",
+        &TableParams {
+            width: mask.width as u32,
+            height: mask.height as u32,
+            max_code: mask.max_code(),
+            unused: 0,
+        },
+    );
+    let sums = if wide { wgpu::TextureFormat::Rg32Uint } else { wgpu::TextureFormat::R32Uint };
+    let stored = sampled | wgpu::TextureUsages::STORAGE_BINDING;
+    let [columns, rows] = [passes.table("columns", false), passes.table("rows", wide)];
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut channels = Vec::new();
+    for codes in bytes.chunks_exact(mask.width * mask.height * texel) {
+        let source = texture(gpu, 0, format, sampled | wgpu::TextureUsages::COPY_DST);
+        gpu.write(&source, 0, codes, mask.width * texel, [mask.width, mask.height]);
+        let half = texture(gpu, 1, wgpu::TextureFormat::R32Uint, stored).create_view(&Default::default());
+        let whole = texture(gpu, 1, sums, stored).create_view(&Default::default());
+        let source = source.create_view(&Default::default());
+        for (pipeline, from, to, lanes) in
+            [(&columns, &source, &half, mask.width), (&rows, &half, &whole, mask.height + 1)]
+        {
+            let bind = gpu.bind(
+                pipeline,
+                &[
+                    params.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(from),
+                    wgpu::BindingResource::TextureView(to),
+                ],
+            );
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &bind, &[]);
+            pass.dispatch_workgroups((lanes as u32).div_ceil(32), 1, 1);
+        }
+        channels.push(whole);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    gpu.check()?;
+    Ok(Table { mask: mask.clone(), wide, channels })
+}
