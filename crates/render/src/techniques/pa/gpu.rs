@@ -57,7 +57,10 @@ pub struct OnGpu {
 
 /// Where answers go.
 enum Sink<'a> {
-    Display { white: f64, out: &'a mut [u32] },
+    Display {
+        white: f64,
+        out: &'a mut [u32],
+    },
     /// Red, green, blue, then every emitter's visibility in every channel of the plan.
     Radiance(&'a mut Vec<Vec<f32>>),
 }
@@ -228,11 +231,7 @@ impl OnGpu {
                             rows_per_image: None,
                         },
                     },
-                    wgpu::Extent3d {
-                        width: CELLS as u32,
-                        height: height as u32,
-                        depth_or_array_layers: 1,
-                    },
+                    wgpu::Extent3d { width: CELLS as u32, height: height as u32, depth_or_array_layers: 1 },
                 );
             }
             let pending = gpu.submit(encoder, &host, layer * answers as u64)?;
@@ -335,7 +334,14 @@ impl OnGpu {
                 let (before, target, goes_on) = self.visibility.turn(&self.passes.gpu, e * plan.channels + c);
                 let params = VisibilityParams { channel: c as u32, goes_on: u32::from(goes_on), ..params };
                 let textures = [self.words.view(), self.combined.view(), &before, &job.screen.view];
-                self.passes.run(encoder, (Pass::Add, &constants(false)), &params, &textures, &target, 0..height);
+                self.passes.run(
+                    encoder,
+                    (Pass::Add, &constants(false)),
+                    &params,
+                    &textures,
+                    &target,
+                    0..height,
+                );
             }
             for k in 0..plan.planes.len() * job.own_channels {
                 let (plane, c) = (k / job.own_channels, k % job.own_channels);
@@ -357,7 +363,14 @@ impl OnGpu {
                     ..params
                 };
                 let textures = [self.words.view(), self.combined.view(), &before, &job.screen.view];
-                self.passes.run(encoder, (Pass::Add, &constants(true)), &params, &textures, &target, 0..height);
+                self.passes.run(
+                    encoder,
+                    (Pass::Add, &constants(true)),
+                    &params,
+                    &textures,
+                    &target,
+                    0..height,
+                );
             }
         }
     }
@@ -444,7 +457,9 @@ fn fill(stage: &Stage, background: &Background, width: usize, out: &mut [u32]) {
     rows.for_each(|(j, (out, kinds))| {
         for (i, row) in out.chunks_exact_mut(width).enumerate() {
             let first = (j * TILE[1] + i) * width;
-            for (pixels, kind) in row.chunks_mut(TILE[0]).zip(kinds).enumerate().map(|(t, (p, k))| ((t, p), k)) {
+            for (pixels, kind) in
+                row.chunks_mut(TILE[0]).zip(kinds).enumerate().map(|(t, (p, k))| ((t, p), k))
+            {
                 let (t, pixels) = pixels;
                 let at = first + t * TILE[0];
                 match kind {

@@ -28,8 +28,7 @@ impl DeviceScreen {
             )));
         }
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let texture =
-            gpu.texture("lit", [size[0], size[1], layers], wgpu::TextureFormat::R32Uint, usage);
+        let texture = gpu.texture("lit", [size[0], size[1], layers], wgpu::TextureFormat::R32Uint, usage);
         for (layer, plane) in background.lit.iter().chain(shares).enumerate() {
             gpu.write(&texture, layer, bytemuck::cast_slice(plane), 4 * size[0], size);
         }

@@ -80,7 +80,9 @@ fn on_gpu(shaders: &Shaders, knobs: Knobs) -> OnGpu {
 /// A shader that is 3 % off.
 fn wrong() -> Shaders {
     let right = Shaders::default();
-    let visibility = right.visibility.replace("between(left, middle)) * scale.y;", "between(left, middle)) * scale.y * 0.97;");
+    let visibility = right
+        .visibility
+        .replace("between(left, middle)) * scale.y;", "between(left, middle)) * scale.y * 0.97;");
     assert_ne!(visibility, right.visibility);
     Shaders { visibility, ..right }
 }

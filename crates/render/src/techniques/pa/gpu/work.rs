@@ -135,12 +135,19 @@ pub struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    pub fn new(theatre: &'a Theatre, size: [usize; 2], plan: &'a Plan, stage: &'a Stage, active: &[bool]) -> Self {
+    pub fn new(
+        theatre: &'a Theatre,
+        size: [usize; 2],
+        plan: &'a Plan,
+        stage: &'a Stage,
+        active: &[bool],
+    ) -> Self {
         let mut of_piece = vec![Vec::new(); plan.pieces.len()];
         for (l, lookup) in plan.lookups.iter().enumerate().filter(|(l, _)| active[*l]) {
             of_piece[lookup.piece].push(l);
         }
-        let most = |reach: &dyn Fn(usize) -> usize| (0..plan.lookups.len()).map(reach).max().unwrap_or(1).max(1);
+        let most =
+            |reach: &dyn Fn(usize) -> usize| (0..plan.lookups.len()).map(reach).max().unwrap_or(1).max(1);
         let reach = [most(&|l| plan.lookups[l].x.reach), most(&|l| plan.lookups[l].y.reach)];
         Self { theatre, size, plan, stage, of_piece, reach }
     }
