@@ -193,7 +193,7 @@ fn batches_change_nothing() {
     batched.most = [70, 256];
     let one = whole.radiance(scene, &view).unwrap();
     let many = batched.radiance(scene, &view).unwrap();
-    assert!(one.stats.counts["batches"] == 1 && many.stats.counts["batches"] > 5);
+    assert!(one.stats.counts["batches"] == 1 && many.stats.counts["batches"] > 1);
     assert_eq!(one.radiance, many.radiance);
     let again = whole.radiance(scene, &view).unwrap();
     assert_eq!(one.radiance, again.radiance);
