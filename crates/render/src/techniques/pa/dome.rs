@@ -43,7 +43,7 @@ pub struct DomeMap {
 pub struct DomeLight<'a> {
     radiance: [f64; 3],
     /// Per plane: its centre and its map a channel.
-    planes: Vec<(DVec2, Vec<&'a DomeMap>)>,
+    pub planes: Vec<(DVec2, Vec<&'a DomeMap>)>,
 }
 
 fn reach_m(theatre: &Theatre, plane: &Plane) -> DVec2 {
@@ -148,18 +148,30 @@ impl DomeMap {
         }
     }
 
+    /// The lattice's values, row by row, and how many a row.
+    pub fn lattice(&self) -> (&[f32], usize) {
+        (&self.values, self.width)
+    }
+
+    /// The first of four lattice columns and rows around an offset from the plane's centre, before any is clamped to the lattice,
+    /// and their weights.
+    pub fn taps(&self, offset_m: DVec2) -> ([f64; 2], [[f64; 4]; 2]) {
+        let t = (offset_m - self.origin_m) * DVec2::new(1.0, -1.0) / self.step_m;
+        let first = t.floor();
+        let weights = t - first;
+        ([first.x - 1.0, first.y - 1.0], [cubic(weights.x), cubic(weights.y)])
+    }
+
     /// Blocked share of the dome at an offset from the plane's centre, by cubic interpolation.
     fn at(&self, offset_m: DVec2) -> f64 {
-        let t = (offset_m - self.origin_m) * DVec2::new(1.0, -1.0) / self.step_m;
+        let ([i, j], [wx, wy]) = self.taps(offset_m);
         let height = self.values.len() / self.width;
-        let (i, j) = (t.x.floor(), t.y.floor());
-        let (wx, wy) = (cubic(t.x - i), cubic(t.y - j));
         let clamp = |k: f64, n: usize| k.clamp(0.0, (n - 1) as f64) as usize;
         let mut sum = 0.0;
         for (dy, wy) in wy.iter().enumerate() {
-            let row = &self.values[clamp(j + dy as f64 - 1.0, height) * self.width..];
+            let row = &self.values[clamp(j + dy as f64, height) * self.width..];
             for (dx, wx) in wx.iter().enumerate() {
-                sum += wx * wy * f64::from(row[clamp(i + dx as f64 - 1.0, self.width)]);
+                sum += wx * wy * f64::from(row[clamp(i + dx as f64, self.width)]);
             }
         }
         sum.clamp(0.0, 1.0)

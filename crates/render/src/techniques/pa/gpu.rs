@@ -21,19 +21,21 @@ use kelir_scene::{Ambient, Theatre};
 use rayon::prelude::*;
 
 use super::background::Background;
+use super::dome::{self, DomeLight, DomeMap};
 use super::kept::Tables;
 use super::plan::Plan;
 use super::tiles::{Kind, TILE, Tiles};
-use super::{Knobs, Weights, plan, shadow_map};
+use super::{Knobs, Skips, Weights, plan, shadow_map};
 use crate::encode::{Srgb, pack};
 use crate::gpu::Gpu;
 use crate::{Frame, Layer, RenderError, Renderer, Stats, View};
 
 pub use passes::Shaders;
-use passes::{Constants, Pass, Passes, RowsParams, ShadeParams, VisibilityParams};
+use passes::{Constants, Pass, Passes, RowsParams, ShadeParams, SlopeParams, VisibilityParams};
 use screen::DeviceScreen;
 use tables::DeviceTables;
 use targets::{CELLS, Host, Layers, List, Target};
+use words::ROW;
 use work::{ACROSS, Batch, MOST_ROWS, MOST_TILES, Script, Stage, Tile, Work};
 
 /// PA's GPU renderer: keeps pipelines, tables, the lit screen and targets between drawings.
@@ -45,8 +47,11 @@ pub struct OnGpu {
     tables: Tables,
     device_tables: DeviceTables,
     background: Option<(Background, Option<DeviceScreen>)>,
+    domes: Vec<DomeMap>,
+    dome_maps: List,
     words: List,
     combined: Target,
+    slopes: Target,
     visibility: Layers,
     own: Layers,
     answers: Target,
@@ -91,14 +96,19 @@ impl OnGpu {
             tables: Tables::default(),
             device_tables: DeviceTables::default(),
             background: None,
+            domes: Vec::new(),
+            dome_maps: List::default(),
             words: List::default(),
             combined: Target::default(),
+            slopes: Target::default(),
             visibility: Layers::default(),
             own: Layers::default(),
             answers: Target::default(),
             host: Host::default(),
             most: [MOST_TILES, MOST_ROWS],
         };
+        let mut new = new;
+        new.dome_maps.write(&new.passes.gpu, &[0u32; ROW]);
         new.passes.gpu.check()?;
         Ok(new)
     }
@@ -111,7 +121,7 @@ impl OnGpu {
             clock = Instant::now();
         };
         let theatre = &*shadow_map::seen(theatre, &self.knobs);
-        plan::refuse_on_gpu(theatre)?;
+        let skips = if view.skip { Skips::ALL } else { Skips::NONE };
         let plan = Plan::new(theatre, view, &self.knobs)?;
         let dark = |e: usize| theatre.lamp.emitters[e].radiance == [0.0; 3];
         let emitters = theatre.lamp.emitters.len();
@@ -123,9 +133,14 @@ impl OnGpu {
             stats.counts.insert(name.into(), count as u64);
         }
         step(&mut stats, "plan");
-        self.tables.prepare(theatre, &plan, &mut stats);
-        self.device_tables.prepare(&self.passes, theatre, &plan)?;
+        let keep = skips.has(Skips::KEPT_TABLES);
+        self.tables.prepare(theatre, &plan, keep, &mut stats);
+        self.device_tables.prepare(&self.passes, theatre, &plan, keep)?;
         step(&mut stats, "tables");
+        if !skips.has(Skips::KEPT_SCREEN) {
+            self.background = None;
+            self.domes.clear();
+        }
         let kept = self.background.take().filter(|(b, _)| b.serves(theatre, view));
         stats.counts.insert("background_reused".into(), u64::from(kept.is_some()));
         let (mut background, screen) = kept.unwrap_or_else(|| (Background::new(theatre, view), None));
@@ -134,18 +149,27 @@ impl OnGpu {
             None => DeviceScreen::new(&self.passes.gpu, &background, view.size)?,
         };
         if let Sink::Display { white, .. } = sink
-            && view.skip
+            && skips.has(Skips::LIT_TILES)
         {
             background.encode(white);
         }
         step(&mut stats, "background");
+        let places = self.prepare_dome(theatre, &mut stats);
+        if places.is_some() {
+            step(&mut stats, "dome");
+        }
         let display = matches!(sink, Sink::Display { .. });
         // The share of an emitter without radiance is zero: any visibility will do for the picture.
-        let idle = |e: usize| display && view.skip && dark(e);
+        let idle = |e: usize| display && skips.has(Skips::DARK_EMITTERS) && dark(e);
         let active: Vec<bool> = plan.lookups.iter().map(|l| !idle(plan.pieces[l.piece].emitter)).collect();
-        let tiles = Tiles { theatre, view, plan: &plan, tables: self.tables.of(theatre, &plan) };
+        let tiles = Tiles { theatre, view, plan: &plan, skips, tables: self.tables.of(theatre, &plan) };
         let stage = Stage::new(&tiles, !display, &active);
-        let work = Work::new(theatre, view.size, &plan, &stage, &active);
+        // Maps are moved out, so that they can be read while targets are drawn to.
+        let domes = std::mem::take(&mut self.domes);
+        let mut work = Work::new(theatre, view.size, &plan, &stage, &active);
+        if let (Ambient::Dome { radiance }, Some(places)) = (theatre.ambient, places) {
+            work.dome = Some((DomeLight::new(theatre, radiance, self.knobs.dome_steps, &domes), places));
+        }
         let coloured = matches!(theatre.ambient, Ambient::Paper { s: [r, g, b], .. } if r != g || g != b);
         let shades = if coloured { 3 } else { plan.channels.max(screen.share_channels) };
         let paper = matches!(theatre.ambient, Ambient::Paper { .. });
@@ -157,7 +181,7 @@ impl OnGpu {
             shades,
             own_channels: if paper && plan.planes.len() > 1 { shades } else { 0 },
         };
-        let runs = work.batches(self.most[0], self.most[1]);
+        let runs = work.batches(self.most[0], self.most[1])?;
         stats.counts.insert("batches".into(), runs.iter().map(|run| run.len() as u64).sum());
         count(&stage, &work, &mut stats);
         step(&mut stats, "tiles");
@@ -172,8 +196,33 @@ impl OnGpu {
         for (name, ms) in ["record", "host", "device"].iter().zip(steps) {
             stats.steps_ms.push(((*name).into(), ms));
         }
+        drop(work);
+        self.domes = domes;
         self.background = Some((background, Some(screen)));
         Ok(stats)
+    }
+
+    /// Makes the dome's maps and uploads them where any is new; where each plane's begin, if there is a dome at all.
+    fn prepare_dome(&mut self, theatre: &Theatre, stats: &mut Stats) -> Option<Vec<Vec<u32>>> {
+        let Ambient::Dome { radiance } = theatre.ambient else { return None };
+        let (steps, before) = (self.knobs.dome_steps, self.domes.len());
+        let built = dome::prepare(theatre, steps, &mut self.domes);
+        stats.counts.insert("domes_built".into(), built);
+        let mut starts = vec![0u32];
+        for map in &self.domes {
+            starts.push(starts[starts.len() - 1] + map.lattice().0.len() as u32);
+        }
+        if built > 0 || self.domes.len() != before {
+            let mut list: Vec<f32> = self.domes.iter().flat_map(|map| map.lattice().0).copied().collect();
+            list.resize(list.len().max(1).next_multiple_of(ROW), 0.0);
+            self.dome_maps.write(&self.passes.gpu, &list);
+        }
+        let light = DomeLight::new(theatre, radiance, steps, &self.domes);
+        let place = |map: &DomeMap| {
+            let k = self.domes.iter().position(|m| std::ptr::eq(m, map)).unwrap_or(0);
+            starts[k]
+        };
+        Some(light.planes.iter().map(|(_, maps)| maps.iter().map(|m| place(m)).collect()).collect())
     }
 
     /// Draws one run of tiles. The host writes all tiles that the device does not shade meanwhile, where it is given the `background`.
@@ -203,6 +252,7 @@ impl OnGpu {
             self.words.write(&gpu, script.words.padded());
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             self.combine(&mut encoder, job, &script);
+            self.slope(&mut encoder, job, batch, &script);
             self.add(&mut encoder, job, batch, &script);
             if k + 1 < run.len() {
                 gpu.queue.submit([encoder.finish()]);
@@ -211,7 +261,7 @@ impl OnGpu {
             }
             self.visibility.settle(&mut encoder);
             self.own.settle(&mut encoder);
-            self.answers.reserve(&gpu, "answers", [CELLS, height], Pass::Codes.format());
+            self.answers.reserve(&gpu, "answers", [CELLS, height, 1]);
             let host = self.host.reserve(&gpu, layer * answers as u64);
             for a in 0..answers {
                 let texture = match (a, &*sink) {
@@ -265,14 +315,14 @@ impl OnGpu {
         let work = job.work;
         let rows = work.rows();
         let height = script.shelves.last().map_or(1, |s| s.range.end) * rows;
-        let target = [work::SHELF * 32, height];
-        self.combined.reserve(&self.passes.gpu, "combined", target, Pass::Combine.format());
+        self.combined.reserve(&self.passes.gpu, "combined", [work::SHELF * 32, height, 1]);
+        let target = self.combined.layer(0);
         for shelves in &script.shelves {
             let mask = &work.theatre.planes[shelves.plane].mask;
             let wide = work.plan.wide[shelves.plane];
             let shift = work.plan.lookups.iter().find(|l| l.plane == shelves.plane).map_or(32, |l| l.shift);
-            let constants =
-                vec![("REACH", work.reach[1] as u32), ("ROWS", rows as u32), ("WIDE", u32::from(wide))];
+            let sub = work.plan.sub as u32;
+            let constants = vec![("REACH", work.reach[1] as u32), ("SUB", sub), ("WIDE", u32::from(wide))];
             let params = RowsParams {
                 blocks: script.blocks,
                 width: mask.width as u32,
@@ -282,14 +332,43 @@ impl OnGpu {
             let table = self.device_tables.of(mask, wide, shelves.channel);
             let range = (shelves.range.start * rows) as u32..(shelves.range.end * rows) as u32;
             let textures = [self.words.view(), table];
-            self.passes.run(
-                encoder,
-                (Pass::Combine, &constants),
-                &params,
-                &textures,
-                self.combined.view(),
-                range,
-            );
+            self.passes.run(encoder, (Pass::Combine, &constants), &params, &textures, &target, range);
+        }
+    }
+
+    /// Opacities of a batch's tilted planes.
+    fn slope(&mut self, encoder: &mut wgpu::CommandEncoder, job: &Job, batch: &Batch, script: &Script) {
+        let (work, sub) = (job.work, job.work.plan.sub);
+        let height = 2 * batch.tiles.len().div_ceil(ACROSS);
+        let layers = script.slopes.last().map_or(1, |s| s.layer + s.channels * sub * sub);
+        self.slopes.reserve(&self.passes.gpu, "slopes", [CELLS, height, layers]);
+        for slope in &script.slopes {
+            let lookup = &work.plan.lookups[slope.lookup];
+            let Some(frame) = &lookup.tilted else { continue };
+            let mask = &work.theatre.planes[lookup.plane].mask;
+            let wide = work.plan.wide[lookup.plane];
+            let constants = vec![("SUB", sub as u32), ("WIDE", u32::from(wide))];
+            let [along_x, along_y] = words::along(work.plan, lookup, frame);
+            for k in 0..slope.channels * sub * sub {
+                let (c, s) = (k / (sub * sub), k % (sub * sub));
+                let params = SlopeParams {
+                    tiles: script.tiles,
+                    count: batch.tiles.len() as u32,
+                    maps: slope.maps,
+                    width: mask.width as u32,
+                    height: mask.height as u32,
+                    sub_x: (s % sub) as u32,
+                    sub_y: (s / sub) as u32,
+                    norm: (1.0 / f64::from(mask.max_code())) as f32,
+                    along_x,
+                    along_y,
+                    ..Default::default()
+                };
+                let textures = [self.words.view(), self.device_tables.of(mask, wide, c)];
+                let target = self.slopes.layer(slope.layer + k);
+                let pass = (Pass::Slope, &constants);
+                self.passes.run(encoder, pass, &params, &textures, &target, 0..height as u32);
+            }
         }
     }
 
@@ -298,50 +377,42 @@ impl OnGpu {
         let (work, plan) = (job.work, job.work.plan);
         let height = 2 * batch.tiles.len().div_ceil(ACROSS) as u32;
         let emitters = work.theatre.lamp.emitters.len();
-        let constants = |own: bool| -> Constants {
+        let constants = |own: bool, goes_on: bool, ends: bool| -> Constants {
             vec![
                 ("REACH", work.reach[0] as u32),
                 ("SUB", plan.sub as u32),
                 ("IRRADIANCE", u32::from(job.weights == Weights::Irradiance)),
                 ("OWN", u32::from(own)),
+                ("TILTED", u32::from(!script.slopes.is_empty())),
+                ("GOES_ON", u32::from(goes_on)),
+                ("ENDS", u32::from(ends)),
             ]
         };
+        let combined = self.combined.layer(0);
         for e in 0..emitters {
-            let of = |p: &usize| plan.pieces[*p].emitter == e;
-            let Some(first) = (0..plan.pieces.len()).find(of) else { continue };
-            let last = first + (first..plan.pieces.len()).filter(of).count();
-            let (from, to) = (first.max(batch.pieces.start), last.min(batch.pieces.end));
+            let all = work.pieces(e);
+            let (from, to) = (all.start.max(batch.pieces.start), all.end.min(batch.pieces.end));
             if from >= to {
                 continue;
             }
+            let ends = to == all.end;
             let params = VisibilityParams {
                 tiles: script.tiles,
                 pieces: script.pieces,
                 lookups: script.lookups,
+                bounds: script.bounds + e as u32,
                 stride: script.stride,
                 count: batch.tiles.len() as u32,
-                begin: from as u32,
-                end: to as u32,
-                first: first as u32,
-                last: last as u32,
                 right: work.size[0] as u32 - 1,
-                bottom: work.size[1] as u32 - 1,
-                ends: u32::from(to == last),
                 shares_step: 1,
                 ..Default::default()
             };
             for c in 0..plan.channels {
                 let (before, target, goes_on) = self.visibility.turn(&self.passes.gpu, e * plan.channels + c);
-                let params = VisibilityParams { channel: c as u32, goes_on: u32::from(goes_on), ..params };
-                let textures = [self.words.view(), self.combined.view(), &before, &job.screen.view];
-                self.passes.run(
-                    encoder,
-                    (Pass::Add, &constants(false)),
-                    &params,
-                    &textures,
-                    &target,
-                    0..height,
-                );
+                let params = VisibilityParams { channel: c as u32, ..params };
+                let textures = [self.words.view(), &combined, &before, &job.screen.view, self.slopes.all()];
+                let pass = (Pass::Add, &constants(false, goes_on, ends));
+                self.passes.run(encoder, pass, &params, &textures, &target, 0..height);
             }
             for k in 0..plan.planes.len() * job.own_channels {
                 let (plane, c) = (k / job.own_channels, k % job.own_channels);
@@ -354,7 +425,6 @@ impl OnGpu {
                 let params = VisibilityParams {
                     // A grey scene's only channel answers for all.
                     channel: c.min(plan.channels - 1) as u32,
-                    goes_on: u32::from(goes_on),
                     plane: plane as u32,
                     shares: (shares + channel) as u32,
                     shares_end: (shares + end) as u32 + if e == job.rest { 0 } else { channel as u32 },
@@ -362,15 +432,9 @@ impl OnGpu {
                     rest: u32::from(e == job.rest),
                     ..params
                 };
-                let textures = [self.words.view(), self.combined.view(), &before, &job.screen.view];
-                self.passes.run(
-                    encoder,
-                    (Pass::Add, &constants(true)),
-                    &params,
-                    &textures,
-                    &target,
-                    0..height,
-                );
+                let textures = [self.words.view(), &combined, &before, &job.screen.view, self.slopes.all()];
+                let pass = (Pass::Add, &constants(true, goes_on, ends));
+                self.passes.run(encoder, pass, &params, &textures, &target, 0..height);
             }
         }
     }
@@ -402,9 +466,17 @@ impl OnGpu {
             ("SHARE_CHANNELS", job.screen.share_channels as u32),
             ("OWN_CHANNELS", job.own_channels as u32),
             ("PLANES", plan.planes.len() as u32),
-            ("GREY", u32::from(job.shades == 1 && job.screen.lit_channels == 1)),
+            ("GREY", u32::from(job.shades == 1 && job.screen.lit_channels == 1 && work.dome.is_none())),
             ("PAPER", u32::from(matches!(work.theatre.ambient, Ambient::Paper { .. }))),
+            ("DOME", u32::from(work.dome.is_some())),
+            ("DOME_PLANES", work.dome.as_ref().map_or(0, |(light, _)| light.planes.len() as u32)),
+            ("ALBEDO", u32::from(work.dome.is_some() && job.screen.uniform.is_none())),
         ];
+        let albedo = job.screen.uniform.unwrap_or([1.0; 3]);
+        let dome = match work.theatre.ambient {
+            Ambient::Dome { radiance } => [0, 1, 2].map(|c| radiance[c] as f32 * albedo[c]),
+            _ => [0.0; 3],
+        };
         let params = ShadeParams {
             tiles: script.tiles,
             stride: script.stride,
@@ -415,13 +487,21 @@ impl OnGpu {
             distances: script.distances,
             scale: (1.0 / white) as f32,
             k_d,
+            domes: script.domes,
             s: [s[0], s[1], s[2], 0.0],
+            dome: [dome[0], dome[1], dome[2], 0.0],
             ..Default::default()
         };
-        let textures =
-            [self.words.view(), self.visibility.all(), self.own.all(), &job.screen.view, &self.bins];
+        let textures = [
+            self.words.view(),
+            self.visibility.all(),
+            self.own.all(),
+            &job.screen.view,
+            &self.bins,
+            self.dome_maps.view(),
+        ];
         let height = 2 * batch.tiles.len().div_ceil(ACROSS) as u32;
-        self.passes.run(encoder, (pass, &constants), &params, &textures, self.answers.view(), 0..height);
+        self.passes.run(encoder, (pass, &constants), &params, &textures, &self.answers.layer(0), 0..height);
     }
 }
 

@@ -85,18 +85,6 @@ pub fn check_view(theatre: &Theatre, view: &View) -> Result<(), RenderError> {
     Ok(())
 }
 
-/// Errors: what the shaders can't draw; the native backend can.
-pub fn refuse_on_gpu(theatre: &Theatre) -> Result<(), RenderError> {
-    let elsewhere = "on the GPU it is not drawn; use --backend cpu";
-    if let Some(i) = theatre.planes.iter().position(is_tilted) {
-        return Err(refuse(format!("puppets[{i}].tilt_deg = {:?}: {elsewhere}", theatre.planes[i].tilt_deg)));
-    }
-    match theatre.ambient {
-        Ambient::Dome { .. } => Err(refuse(format!("ambient.model = \"dome\": {elsewhere}"))),
-        _ => Ok(()),
-    }
-}
-
 impl Plan {
     /// Errors: what this code can't draw truthfully.
     pub fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {

@@ -5,19 +5,21 @@ struct Params {
     tiles: u32,
     stride: u32,
     count: u32,
+    // The image's last column and row.
     right: u32,
     bottom: u32,
     // The channel of `radiance`.
     channel: u32,
-    // Among the words: the planes' distances, one a word vector, as f32 bits; for the dome, see `dome`.
+    // Among the words: the planes' distances, one a vector, as f32 bits; four vectors a plane that hides the dome.
     distances: u32,
-    columns: u32,
-    rows: u32,
+    domes: u32,
     // Exposure: 1 / white.
     scale: f32,
     k_d: f32,
-    unused: f32,
+    unused_x: u32,
+    unused_y: u32,
     s: vec4<f32>,
+    // The dome's radiance, times the albedo where that is one colour.
     dome: vec4<f32>,
 }
 
@@ -31,8 +33,11 @@ override OWN_CHANNELS: u32 = 0u;
 override PLANES: u32 = 1u;
 // Whether all three channels are one.
 override GREY: bool = false;
-// The paper's ambient light.
+// The paper's ambient light; planes that hide the dome, if there is one; whether the albedo is an image, then the last layers of `lit`.
 override PAPER: bool = false;
+override DOME: bool = false;
+override DOME_PLANES: u32 = 0u;
+override ALBEDO: bool = false;
 
 const ACROSS = 64u;
 
@@ -42,10 +47,12 @@ const ACROSS = 64u;
 @group(0) @binding(2) var visibility: texture_2d_array<u32>;
 // Layer plane * OWN_CHANNELS + c.
 @group(0) @binding(3) var own: texture_2d_array<u32>;
-// The lit screen's channels, then the shares of every emitter but REST, channel by channel.
+// The lit screen's channels, then the shares of every emitter but REST, channel by channel; four rows a texel.
 @group(0) @binding(4) var lit: texture_2d_array<u32>;
 // The encoder's bins.
 @group(0) @binding(5) var bins: texture_2d<u32>;
+// The dome's maps, one after the other.
+@group(0) @binding(6) var maps: texture_2d<u32>;
 
 // As in encode.rs: 128 bins an octave from 2^-13, a step's place in the low half.
 const LOWEST = 114u << 23u;
@@ -67,11 +74,46 @@ fn code(linear: vec4<f32>) -> vec4<u32> {
 
 // Four pixels of a plane that is as large as the image.
 fn pixels(layer: u32, x: u32, y: u32) -> vec4<f32> {
-    let a = textureLoad(lit, vec2<u32>(x, min(y, params.bottom)), layer, 0).x;
-    let b = textureLoad(lit, vec2<u32>(x, min(y + 1u, params.bottom)), layer, 0).x;
-    let c = textureLoad(lit, vec2<u32>(x, min(y + 2u, params.bottom)), layer, 0).x;
-    let d = textureLoad(lit, vec2<u32>(x, min(y + 3u, params.bottom)), layer, 0).x;
-    return bitcast<vec4<f32>>(vec4<u32>(a, b, c, d));
+    return bitcast<vec4<f32>>(textureLoad(lit, vec2<u32>(x, y / 4u), layer, 0));
+}
+
+fn lattice(at: u32) -> f32 {
+    return bitcast<f32>(textureLoad(maps, vec2<u32>(at % 2048u, at / 2048u), 0).x);
+}
+
+// What a plane hides of the dome at one pixel: a cubic between lattice points. `columns` and `rows` say where the windows are, four
+// weights and the first point of each pixel; `map` where the map is and how wide.
+fn hidden(columns: u32, rows: u32, map: vec2<u32>) -> f32 {
+    let across = bitcast<vec4<f32>>(words(columns));
+    let down = bitcast<vec4<f32>>(words(rows));
+    var at = map.x + words(rows + 1u).x * map.y + words(columns + 1u).x;
+    var sum = 0.0;
+    for (var k = 0; k < 4; k++) {
+        let row = vec4<f32>(lattice(at), lattice(at + 1u), lattice(at + 2u), lattice(at + 3u));
+        sum += down[k] * dot(across, row);
+        at += map.y;
+    }
+    return clamp(sum, 0.0, 1.0);
+}
+
+// The dome's light in channel c at four pixels.
+fn dome(c: u32, x: u32, y: u32) -> vec4<f32> {
+    var light = vec4<f32>(params.dome[c]);
+    for (var p = 0u; p < DOME_PLANES; p++) {
+        // Windows of columns and rows, channels; then a map each.
+        let plane = words(params.domes + 4u * p);
+        let map = words(params.domes + 4u * p + 1u + min(c, plane.z - 1u)).xy;
+        let columns = plane.x + 2u * x;
+        let a = hidden(columns, plane.y + 2u * min(y, params.bottom), map);
+        let b = hidden(columns, plane.y + 2u * min(y + 1u, params.bottom), map);
+        let c = hidden(columns, plane.y + 2u * min(y + 2u, params.bottom), map);
+        let d = hidden(columns, plane.y + 2u * min(y + 3u, params.bottom), map);
+        light *= 1.0 - vec4<f32>(a, b, c, d);
+    }
+    if ALBEDO {
+        light *= pixels(LIT_CHANNELS + (EMITTERS - 1u) * SHARE_CHANNELS + c, x, y);
+    }
+    return light;
 }
 
 fn seen(emitter: u32, c: u32, place: vec2<u32>) -> vec4<f32> {
@@ -106,7 +148,11 @@ fn light(c: u32, place: vec2<u32>, x: u32, y: u32) -> vec4<f32> {
     if PAPER {
         factor += (1.0 - factor) * (min(distance_m(c, place) / params.k_d, vec4<f32>(1.0)) * params.s[c]);
     }
-    return pixels(min(c, LIT_CHANNELS - 1u), x, y) * factor;
+    let lamp = pixels(min(c, LIT_CHANNELS - 1u), x, y) * factor;
+    if DOME {
+        return lamp + dome(c, x, y);
+    }
+    return lamp;
 }
 
 @vertex

@@ -13,12 +13,16 @@ use crate::project;
 /// The plane's frame in world and texel coordinates.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    centre_m: DVec3,
-    normal: DVec3,
-    /// Texels per metre along u, and per metre *down* along v, as vectors.
-    u: DVec3,
-    v: DVec3,
-    middle: DVec2,
+    /// The plane's centre, metres.
+    pub centre_m: DVec3,
+    /// Its unit normal.
+    pub normal: DVec3,
+    /// Texels per metre along u, as a vector.
+    pub u: DVec3,
+    /// Texels per metre *down* along v, likewise.
+    pub v: DVec3,
+    /// The centre in texels.
+    pub middle: DVec2,
 }
 
 impl Frame {

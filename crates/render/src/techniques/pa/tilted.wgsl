@@ -30,28 +30,34 @@ const ACROSS = 64u;
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var plan: texture_2d<u32>;
-@group(0) @binding(2) var table: texture_2d<u32>;
+@group(0) @binding(2) var table: texture_2d_array<u32>;
 
 fn words(at: u32) -> vec4<u32> {
     return textureLoad(plan, vec2<u32>(at % 2048u, at / 2048u), 0);
 }
 
-// The sum of a box's codes: sums at its corners.
-fn box(low: vec2<u32>, high: vec2<u32>) -> f32 {
-    let a = textureLoad(table, low, 0).xy;
-    let b = textureLoad(table, vec2<u32>(high.x, low.y), 0).xy;
-    let c = textureLoad(table, vec2<u32>(low.x, high.y), 0).xy;
-    let d = textureLoad(table, high, 0).xy;
-    // The two rows' own sums, then their difference.
-    let upper = b.x - a.x;
-    let lower = d.x - c.x;
-    let sum = f32(lower - upper);
+// The table's entry, low word first; its texels hold four rows, see table.wgsl.
+fn entry(x: u32, y: u32) -> vec2<u32> {
+    let place = vec2<u32>(x, (y + 8u) / 4u);
+    let low = textureLoad(table, place, 0, 0)[y % 4u];
     if WIDE {
-        let upper_high = b.y - a.y - u32(b.x < a.x);
-        let lower_high = d.y - c.y - u32(d.x < c.x);
-        return f32(lower_high - upper_high - u32(lower < upper)) * 4294967296.0 + sum;
+        return vec2<u32>(low, textureLoad(table, place, 1, 0)[y % 4u]);
     }
-    return sum;
+    return vec2<u32>(low, 0u);
+}
+
+// a - b of 64 bits.
+fn minus(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
+    return vec2<u32>(a.x - b.x, a.y - b.y - u32(a.x < b.x));
+}
+
+// The sum of a box's codes between two columns, from sums at its corners.
+fn box(upper: vec2<u32>, next_upper: vec2<u32>, lower: vec2<u32>, next_lower: vec2<u32>) -> f32 {
+    let sum = minus(minus(next_lower, lower), minus(next_upper, upper));
+    if WIDE {
+        return f32(sum.y) * 4294967296.0 + f32(sum.x);
+    }
+    return f32(sum.x);
 }
 
 // Ends of three parts of a box [centre - side / 2, centre + side / 2], in whole texels from the centre's own, and each part's weight.
@@ -124,11 +130,23 @@ fn opacity(maps: u32, i: f32, j: f32) -> f32 {
     let xs = inside(base.x, x.ends, params.width);
     let ys = inside(base.y, y.ends, params.height);
     var sum = 0.0;
+    var upper_a = entry(xs.x, ys.x);
+    var upper_b = entry(xs.y, ys.x);
+    var upper_c = entry(xs.z, ys.x);
+    var upper_d = entry(xs.w, ys.x);
     for (var k = 0; k < 3; k++) {
-        let row = x.weights.x * box(vec2<u32>(xs.x, ys[k]), vec2<u32>(xs.y, ys[k + 1]))
-            + x.weights.y * box(vec2<u32>(xs.y, ys[k]), vec2<u32>(xs.z, ys[k + 1]))
-            + x.weights.z * box(vec2<u32>(xs.z, ys[k]), vec2<u32>(xs.w, ys[k + 1]));
+        let lower_a = entry(xs.x, ys[k + 1]);
+        let lower_b = entry(xs.y, ys[k + 1]);
+        let lower_c = entry(xs.z, ys[k + 1]);
+        let lower_d = entry(xs.w, ys[k + 1]);
+        let row = x.weights.x * box(upper_a, upper_b, lower_a, lower_b)
+            + x.weights.y * box(upper_b, upper_c, lower_b, lower_c)
+            + x.weights.z * box(upper_c, upper_d, lower_c, lower_d);
         sum += y.weights[k] * row;
+        upper_a = lower_a;
+        upper_b = lower_b;
+        upper_c = lower_c;
+        upper_d = lower_d;
     }
     let mean = sum / (sides.x * sides.y) * params.norm;
     return select(mean, 1.0, mean > 0.999999);

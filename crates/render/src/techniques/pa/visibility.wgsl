@@ -4,25 +4,17 @@
 // Every fragment of the target is four pixels, one above the other; a tile of 32 x 8 pixels is a cell of 32 x 2 fragments.
 
 struct Params {
-    // Where things begin among the words.
+    // Where things begin among the words: tiles, pieces, look-ups, the loop's bounds.
     tiles: u32,
     pieces: u32,
     lookups: u32,
+    bounds: u32,
     // Words of one tile, and the number of tiles.
     stride: u32,
     count: u32,
-    // Pieces to add, and all pieces of the emitter.
-    begin: u32,
-    end: u32,
-    first: u32,
-    last: u32,
     channel: u32,
-    // The image's last column and row, pixels.
+    // The image's last column, pixels.
     right: u32,
-    bottom: u32,
-    // Whether sums go on from `before`; whether they are divided by the weights' sum at last.
-    goes_on: u32,
-    ends: u32,
     // The plane whose own shadow is asked for, and where the emitter's share of the light is: layers `shares` to `shares_end` - 1
     // by `shares_step`; what they leave where `rest` is 1.
     plane: u32,
@@ -30,15 +22,21 @@ struct Params {
     shares_end: u32,
     shares_step: u32,
     rest: u32,
-    unused: u32,
+    unused_x: u32,
+    unused_y: u32,
+    unused_z: u32,
 }
 
 // Weights at each end of a box, sub-pixels a pixel and axis.
 override REACH: u32 = 2u;
 override SUB: u32 = 1u;
-// Pieces weigh by their own irradiance; one plane's own shadow is asked for.
+// Pieces weigh by their own irradiance; one plane's own shadow is asked for; some planes are tilted.
 override IRRADIANCE: bool = false;
 override OWN: bool = false;
+override TILTED: bool = false;
+// Sums go on from `before`; they are divided by the weights' sum at last.
+override GOES_ON: bool = false;
+override ENDS: bool = true;
 
 // As in rows.wgsl.
 const SHELF = 64u;
@@ -51,64 +49,66 @@ const ACROSS = 64u;
 @group(0) @binding(2) var sums: texture_2d<u32>;
 @group(0) @binding(3) var before: texture_2d<u32>;
 @group(0) @binding(4) var lit: texture_2d_array<u32>;
+// Opacities of tilted planes, see tilted.wgsl.
+@group(0) @binding(5) var slopes: texture_2d_array<u32>;
 
 fn words(at: u32) -> vec4<u32> {
     return textureLoad(plan, vec2<u32>(at % 2048u, at / 2048u), 0);
 }
 
-// Four rows' entries of a combined row.
-struct Entries {
-    low: vec4<u32>,
-    high: vec4<u32>,
-}
-
-// One plane of one piece as a tile sees it: where its combined rows begin, and which texels they hold.
+// One plane of one piece as a tile sees it: where its combined rows begin, which texels they hold, which of a column's texels is asked for.
 struct Strip {
     block: u32,
     low: i32,
     high: i32,
-    row: u32,
+    quad: u32,
 }
 
-fn entries(strip: Strip, texel: i32) -> Entries {
+// Four rows' entries of combined rows.
+fn entries(strip: Strip, texel: i32) -> vec4<u32> {
     let t = u32(clamp(texel, strip.low, strip.high) - strip.low);
     let block = strip.block + t / BLOCK;
-    let x = block % SHELF * BLOCK + t % BLOCK;
-    let y = block / SHELF * (8u * SUB) + strip.row;
-    let a = textureLoad(sums, vec2<u32>(x, y), 0).xy;
-    let b = textureLoad(sums, vec2<u32>(x, y + SUB), 0).xy;
-    let c = textureLoad(sums, vec2<u32>(x, y + 2u * SUB), 0).xy;
-    let d = textureLoad(sums, vec2<u32>(x, y + 3u * SUB), 0).xy;
-    return Entries(vec4<u32>(a.x, b.x, c.x, d.x), vec4<u32>(a.y, b.y, c.y, d.y));
-}
-
-fn between(a: Entries, b: Entries) -> vec4<f32> {
-    let low = b.low - a.low;
-    let high = b.high - a.high - vec4<u32>(b.low < a.low);
-    return vec4<f32>(high) * 4294967296.0 + vec4<f32>(low);
+    let place = vec2<u32>(block % SHELF * BLOCK + t % BLOCK, block / SHELF * (2u * SUB) + strip.quad);
+    return textureLoad(sums, place, 0);
 }
 
 // Mean opacity of the boxes of four pixels: positive weights of exact integer differences.
-fn opacity(windows: u32, scale: vec2<f32>, strip: Strip) -> vec4<f32> {
-    var window = words(windows);
-    let first = bitcast<i32>(window.x);
-    let second = bitcast<i32>(window.y);
-    var left = entries(strip, first);
-    var right = entries(strip, second);
-    let middle = right;
+fn opacity(windows: u32, interior: f32, strip: Strip) -> vec4<f32> {
     var mean = vec4<f32>(0.0);
-    for (var k = 0u; k < REACH; k++) {
-        if k % 2u == 1u {
-            window = words(windows + (k + 1u) / 2u);
+    var left = vec4<u32>(0u);
+    var middle = vec4<u32>(0u);
+    for (var k = 0u; k < REACH; k += 3u) {
+        let first = words(windows + k / 3u * 2u);
+        let second = words(windows + k / 3u * 2u + 1u);
+        let a = bitcast<i32>(first.x);
+        let b = bitcast<i32>(second.x);
+        let weights = bitcast<vec3<f32>>(first.yzw);
+        let weights_b = bitcast<vec3<f32>>(second.yzw);
+        left = entries(strip, a);
+        var right = entries(strip, b);
+        if k == 0u {
+            middle = right;
         }
-        let weights = bitcast<vec2<f32>>(select(window.zw, window.xy, vec2<bool>(k % 2u == 1u)));
-        let next_left = entries(strip, first + i32(k) + 1);
-        let next_right = entries(strip, second + i32(k) + 1);
-        mean += weights.x * between(left, next_left) + weights.y * between(right, next_right);
-        left = next_left;
-        right = next_right;
+        var next = entries(strip, a + 1);
+        var next_b = entries(strip, b + 1);
+        mean += weights.x * vec4<f32>(next - left) + weights_b.x * vec4<f32>(next_b - right);
+        left = next;
+        right = next_b;
+        if k + 1u < REACH {
+            next = entries(strip, a + 2);
+            next_b = entries(strip, b + 2);
+            mean += weights.y * vec4<f32>(next - left) + weights_b.y * vec4<f32>(next_b - right);
+            left = next;
+            right = next_b;
+        }
+        if k + 2u < REACH {
+            next = entries(strip, a + 3);
+            next_b = entries(strip, b + 3);
+            mean += weights.z * vec4<f32>(next - left) + weights_b.z * vec4<f32>(next_b - right);
+            left = next;
+        }
     }
-    mean = (mean + scale.x * between(left, middle)) * scale.y;
+    mean += interior * vec4<f32>(middle - left);
     // What is dark is so exactly, as where it is not looked up at all.
     return select(mean, vec4<f32>(1.0), mean > vec4<f32>(0.999999));
 }
@@ -141,12 +141,12 @@ fn weight(piece: u32, column: f32, rows: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(share);
 }
 
-fn share(x: u32, y: u32) -> f32 {
-    var sum = 0.0;
+fn share(x: u32, quad: u32) -> vec4<f32> {
+    var sum = vec4<f32>(0.0);
     for (var layer = params.shares; layer < params.shares_end; layer += params.shares_step) {
-        sum += bitcast<f32>(textureLoad(lit, vec2<u32>(x, min(y, params.bottom)), layer, 0).x);
+        sum += bitcast<vec4<f32>>(textureLoad(lit, vec2<u32>(x, quad), layer, 0));
     }
-    return select(sum, 1.0 - sum, params.rest == 1u);
+    return select(sum, 1.0 - sum, vec4<bool>(params.rest == 1u));
 }
 
 @vertex
@@ -161,37 +161,45 @@ fn add(@builtin(position) place: vec4<f32>) -> @location(0) vec4<u32> {
     let tile = params.tiles + params.stride * min(y / 2u * ACROSS + x / 32u, params.count - 1u);
     let home = words(tile);
     let column = min(home.x + x % 32u, params.right);
-    let row = y % 2u * 4u;
-    let rows = vec4<f32>(f32(home.y + row)) + vec4<f32>(0.0, 1.0, 2.0, 3.0);
+    let row = home.y + y % 2u * 4u;
+    let rows = vec4<f32>(f32(row)) + vec4<f32>(0.0, 1.0, 2.0, 3.0);
+    // Pieces to add, and all pieces of the emitter; read from the words, since some drivers compile anew for each value of a uniform
+    // that bounds a loop.
+    let bounds = words(params.bounds);
     var all = vec4<f32>(0.0);
-    if OWN || params.ends == 1u {
-        for (var p = params.first; p < params.last; p++) {
+    if OWN || ENDS {
+        for (var p = bounds.z; p < bounds.w; p++) {
             all += weight(params.pieces + 3u * p, f32(column), rows);
         }
     }
     var total = vec4<f32>(0.0);
-    if params.goes_on == 1u {
+    if GOES_ON {
         total = bitcast<vec4<f32>>(textureLoad(before, vec2<u32>(x, y), 0));
     }
     var light = vec4<f32>(1.0);
     if OWN {
-        let j = home.y + row;
-        light = vec4<f32>(share(column, j), share(column, j + 1u), share(column, j + 2u), share(column, j + 3u));
+        light = share(column, row / 4u);
     }
-    for (var p = params.begin; p < params.end; p++) {
+    for (var p = bounds.x; p < bounds.y; p++) {
         let piece = words(params.pieces + 3u * p);
         var sum = vec4<f32>(0.0);
         for (var s = 0u; s < SUB * SUB; s++) {
             var product = vec4<f32>(1.0);
             for (var l = piece.x; l < piece.y; l++) {
-                let lookup = words(params.lookups + 2u * l);
-                if !OWN || lookup.z == params.plane {
-                    let scale = bitcast<vec2<f32>>(words(params.lookups + 2u * l + 1u).xy);
+                // Its windows, words from channel to channel (blocks or layers), plane or 65536 + plane where it is tilted, interior.
+                let lookup = words(params.lookups + l);
+                if !OWN || (lookup.z & 0xffffu) == params.plane {
                     let seen = words(tile + 1u + l);
-                    let windows = lookup.x + (column * SUB + s % SUB) * (1u + REACH / 2u);
-                    let block = seen.x + params.channel * lookup.y;
-                    let strip = Strip(block, bitcast<i32>(seen.y), bitcast<i32>(seen.z), row * SUB + s / SUB);
-                    let shade = opacity(windows, scale, strip);
+                    let begins = seen.x + params.channel * lookup.y;
+                    var shade = vec4<f32>(0.0);
+                    if TILTED && lookup.z > 0xffffu {
+                        shade = bitcast<vec4<f32>>(textureLoad(slopes, vec2<u32>(x, y), begins + s, 0));
+                    } else {
+                        let windows = lookup.x + (column * SUB + s % SUB) * ((REACH + 2u) / 3u * 2u);
+                        let quad = y % 2u * SUB + s / SUB;
+                        let strip = Strip(begins, bitcast<i32>(seen.y), bitcast<i32>(seen.z), quad);
+                        shade = opacity(windows, bitcast<f32>(lookup.w), strip);
+                    }
                     if OWN {
                         sum += shade;
                     } else {
@@ -210,7 +218,7 @@ fn add(@builtin(position) place: vec4<f32>) -> @location(0) vec4<u32> {
             total += weight(params.pieces + 3u * p, f32(column), rows) * mean;
         }
     }
-    if !OWN && params.ends == 1u {
+    if !OWN && ENDS {
         total = min(total / all, vec4<f32>(1.0));
     }
     return bitcast<vec4<u32>>(total);

@@ -13,6 +13,7 @@ use crate::gpu::Gpu;
 pub struct Shaders {
     pub table: String,
     pub rows: String,
+    pub tilted: String,
     pub visibility: String,
     pub shade: String,
 }
@@ -22,6 +23,7 @@ impl Default for Shaders {
         Self {
             table: include_str!("../table.wgsl").into(),
             rows: include_str!("../rows.wgsl").into(),
+            tilted: include_str!("../tilted.wgsl").into(),
             visibility: include_str!("../visibility.wgsl").into(),
             shade: include_str!("../shade.wgsl").into(),
         }
@@ -38,6 +40,24 @@ pub struct RowsParams {
     pub shift: u32,
 }
 
+/// Of `slope`.
+#[repr(C)]
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
+pub struct SlopeParams {
+    pub tiles: u32,
+    pub count: u32,
+    pub maps: u32,
+    pub width: u32,
+    pub height: u32,
+    pub sub_x: u32,
+    pub sub_y: u32,
+    pub norm: f32,
+    pub along_x: f32,
+    pub along_y: f32,
+    pub unused_x: u32,
+    pub unused_y: u32,
+}
+
 /// Of `add`.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
@@ -45,23 +65,19 @@ pub struct VisibilityParams {
     pub tiles: u32,
     pub pieces: u32,
     pub lookups: u32,
+    pub bounds: u32,
     pub stride: u32,
     pub count: u32,
-    pub begin: u32,
-    pub end: u32,
-    pub first: u32,
-    pub last: u32,
     pub channel: u32,
     pub right: u32,
-    pub bottom: u32,
-    pub goes_on: u32,
-    pub ends: u32,
     pub plane: u32,
     pub shares: u32,
     pub shares_end: u32,
     pub shares_step: u32,
     pub rest: u32,
-    pub unused: u32,
+    pub unused_x: u32,
+    pub unused_y: u32,
+    pub unused_z: u32,
 }
 
 /// Of `codes` and `radiance`.
@@ -75,11 +91,11 @@ pub struct ShadeParams {
     pub bottom: u32,
     pub channel: u32,
     pub distances: u32,
-    pub columns: u32,
-    pub rows: u32,
+    pub domes: u32,
     pub scale: f32,
     pub k_d: f32,
-    pub unused: f32,
+    pub unused_x: u32,
+    pub unused_y: u32,
     pub s: [f32; 4],
     pub dome: [f32; 4],
 }
@@ -88,6 +104,7 @@ pub struct ShadeParams {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
     Combine,
+    Slope,
     Add,
     Codes,
     Radiance,
@@ -97,20 +114,16 @@ impl Pass {
     fn entry(self) -> &'static str {
         match self {
             Self::Combine => "combine",
+            Self::Slope => "slope",
             Self::Add => "add",
             Self::Codes => "codes",
             Self::Radiance => "radiance",
         }
     }
-
-    /// What its target holds.
-    pub fn format(self) -> wgpu::TextureFormat {
-        match self {
-            Self::Combine => wgpu::TextureFormat::Rg32Uint,
-            _ => wgpu::TextureFormat::Rgba32Uint,
-        }
-    }
 }
+
+/// What all targets hold: four answers a fragment.
+pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 /// Values of a shader's `override` constants.
 pub type Constants = Vec<(&'static str, u32)>;
@@ -118,29 +131,30 @@ pub type Constants = Vec<(&'static str, u32)>;
 /// Shader modules, layouts and the pipelines made so far.
 pub struct Passes {
     pub gpu: Gpu,
-    table: [wgpu::ShaderModule; 2],
-    modules: [wgpu::ShaderModule; 3],
-    layouts: [wgpu::BindGroupLayout; 3],
+    table: wgpu::ShaderModule,
+    modules: [wgpu::ShaderModule; 4],
+    layouts: [wgpu::BindGroupLayout; 4],
     made: Mutex<HashMap<(Pass, Constants), wgpu::RenderPipeline>>,
 }
 
 impl Passes {
     /// Reads the shaders; pipelines are made when they are first needed.
     pub fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, RenderError> {
-        let wide = shaders.table.replace("r32uint", "rg32uint");
         // Dimensions of the textures behind the uniform buffer at binding 0.
         let (flat, layers) = (wgpu::TextureViewDimension::D2, wgpu::TextureViewDimension::D2Array);
         let new = Self {
-            table: [gpu.module("table.wgsl", &shaders.table), gpu.module("table.wgsl, wide", &wide)],
+            table: gpu.module("table.wgsl", &shaders.table),
             modules: [
                 gpu.module("rows.wgsl", &shaders.rows),
+                gpu.module("tilted.wgsl", &shaders.tilted),
                 gpu.module("visibility.wgsl", &shaders.visibility),
                 gpu.module("shade.wgsl", &shaders.shade),
             ],
             layouts: [
-                layout(&gpu, &[flat, flat]),
-                layout(&gpu, &[flat, flat, flat, layers]),
-                layout(&gpu, &[flat, layers, layers, layers, flat]),
+                layout(&gpu, &[flat, layers]),
+                layout(&gpu, &[flat, layers]),
+                layout(&gpu, &[flat, flat, flat, layers, layers]),
+                layout(&gpu, &[flat, layers, layers, layers, flat, flat]),
             ],
             made: Mutex::default(),
             gpu,
@@ -151,14 +165,25 @@ impl Passes {
 
     /// The compute pipeline of an entry point of table.wgsl.
     pub fn table(&self, entry: &str, wide: bool) -> wgpu::ComputePipeline {
-        self.gpu.pipeline(&self.table[usize::from(wide)], entry)
+        self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: None,
+            module: &self.table,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &[("WIDE", f64::from(u8::from(wide)))],
+                ..Default::default()
+            },
+            cache: None,
+        })
     }
 
     fn index(pass: Pass) -> usize {
         match pass {
             Pass::Combine => 0,
-            Pass::Add => 1,
-            Pass::Codes | Pass::Radiance => 2,
+            Pass::Slope => 1,
+            Pass::Add => 2,
+            Pass::Codes | Pass::Radiance => 3,
         }
     }
 
@@ -189,7 +214,7 @@ impl Passes {
                     module,
                     entry_point: Some(pass.entry()),
                     compilation_options: options(),
-                    targets: &[Some(pass.format().into())],
+                    targets: &[Some(FORMAT.into())],
                 }),
                 multiview_mask: None,
                 cache: None,

@@ -7,8 +7,8 @@ use kelir_scene::{Mask, Texels, Theatre};
 
 use super::super::plan::Plan;
 use super::passes::Passes;
+use super::screen::layered;
 use crate::RenderError;
-use crate::gpu::Gpu;
 
 /// The shader's `Params`.
 #[repr(C)]
@@ -17,7 +17,7 @@ pub struct TableParams {
     pub width: u32,
     pub height: u32,
     pub max_code: u32,
-    pub unused: u32,
+    pub quads: u32,
 }
 
 /// Tables of every channel of a mask.
@@ -32,10 +32,16 @@ struct Table {
 pub struct DeviceTables(Vec<Table>);
 
 impl DeviceTables {
-    /// Builds the tables of masks that are new and forgets those that are gone.
-    pub fn prepare(&mut self, passes: &Passes, theatre: &Theatre, plan: &Plan) -> Result<(), RenderError> {
+    /// Builds the tables of masks that are new, or of all unless `keep`, and forgets those that are gone.
+    pub fn prepare(
+        &mut self,
+        passes: &Passes,
+        theatre: &Theatre,
+        plan: &Plan,
+        keep: bool,
+    ) -> Result<(), RenderError> {
         let serves = |t: &Table, p: usize| t.mask.id == theatre.planes[p].mask.id && t.wide == plan.wide[p];
-        self.0.retain(|t| plan.planes.iter().any(|p| serves(t, *p)));
+        self.0.retain(|t| keep && plan.planes.iter().any(|p| serves(t, *p)));
         for &p in &plan.planes {
             if !self.0.iter().any(|t| serves(t, p)) {
                 self.0.push(build(passes, &theatre.planes[p].mask, plan.wide[p])?);
@@ -63,9 +69,8 @@ fn build(passes: &Passes, mask: &Arc<Mask>, wide: bool) -> Result<Table, RenderE
             gpu.adapter(),
         )));
     }
-    let texture = |gpu: &Gpu, more: usize, format, usage| {
-        gpu.texture("table", [mask.width + more, mask.height + more, 1], format, usage)
-    };
+    // Four rows a texel, with 8 rows and more above and below.
+    let quads = (mask.height + 8) / 4 + 2;
     let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
     let (format, bytes): (_, &[u8]) = match &mask.texels {
         Texels::U8(t) => (wgpu::TextureFormat::R8Uint, t),
@@ -78,22 +83,30 @@ fn build(passes: &Passes, mask: &Arc<Mask>, wide: bool) -> Result<Table, RenderE
             width: mask.width as u32,
             height: mask.height as u32,
             max_code: mask.max_code(),
-            unused: 0,
+            quads: quads as u32,
         },
     );
-    let sums = if wide { wgpu::TextureFormat::Rg32Uint } else { wgpu::TextureFormat::R32Uint };
     let stored = sampled | wgpu::TextureUsages::STORAGE_BINDING;
     let [columns, rows] = [passes.table("columns", false), passes.table("rows", wide)];
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut channels = Vec::new();
     for codes in bytes.chunks_exact(mask.width * mask.height * texel) {
-        let source = texture(gpu, 0, format, sampled | wgpu::TextureUsages::COPY_DST);
+        let source = gpu.texture(
+            "codes",
+            [mask.width, mask.height, 1],
+            format,
+            sampled | wgpu::TextureUsages::COPY_DST,
+        );
         gpu.write(&source, 0, codes, mask.width * texel, [mask.width, mask.height]);
-        let half = texture(gpu, 1, wgpu::TextureFormat::R32Uint, stored).create_view(&Default::default());
-        let whole = texture(gpu, 1, sums, stored).create_view(&Default::default());
-        let source = source.create_view(&Default::default());
+        let sums = |label: &str, width: usize, layers: usize| {
+            gpu.texture(label, [width, quads, layers], wgpu::TextureFormat::Rgba32Uint, stored)
+        };
+        let half = sums("columns", mask.width, 1);
+        let whole = layered(&sums("table", mask.width + 1, 1 + usize::from(wide)));
+        let (source, half_target) = (source.create_view(&Default::default()), layered(&half));
+        let half = half.create_view(&Default::default());
         for (pipeline, from, to, lanes) in
-            [(&columns, &source, &half, mask.width), (&rows, &half, &whole, mask.height + 1)]
+            [(&columns, &source, &half_target, mask.width), (&rows, &half, &whole, quads)]
         {
             let bind = gpu.bind(
                 pipeline,

@@ -1,5 +1,6 @@
 //! Textures that grow when asked for more and are kept.
 
+use super::passes::FORMAT;
 use super::screen::layered;
 use super::words::ROW;
 use super::work::ACROSS;
@@ -11,30 +12,32 @@ pub const CELLS: usize = ACROSS * 32;
 const DRAWN: wgpu::TextureUsages =
     wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
 
-/// One texture that a pass draws to.
+/// A texture that passes draw to, with as many layers as asked for.
 #[derive(Default)]
 pub struct Target(Option<(wgpu::Texture, wgpu::TextureView)>);
 
 impl Target {
-    /// Makes it at least this large.
-    pub fn reserve(
-        &mut self,
-        gpu: &Gpu,
-        label: &str,
-        [width, height]: [usize; 2],
-        format: wgpu::TextureFormat,
-    ) {
-        let serves = |t: &wgpu::Texture| t.width() as usize >= width && t.height() as usize >= height;
+    /// Makes it at least this large: width, height, layers.
+    pub fn reserve(&mut self, gpu: &Gpu, label: &str, size: [usize; 3]) {
+        let serves = |t: &wgpu::Texture| {
+            let have = [t.width(), t.height(), t.depth_or_array_layers()];
+            have.iter().zip(size).all(|(have, want)| *have as usize >= want)
+        };
         if !self.0.as_ref().is_some_and(|(t, _)| serves(t)) {
-            let usage = DRAWN | wgpu::TextureUsages::COPY_SRC;
-            let texture = gpu.texture(label, [width, height, 1], format, usage);
-            let view = texture.create_view(&Default::default());
+            let texture = gpu.texture(label, size, FORMAT, DRAWN | wgpu::TextureUsages::COPY_SRC);
+            let view = layered(&texture);
             self.0 = Some((texture, view));
         }
     }
 
-    pub fn view(&self) -> &wgpu::TextureView {
+    /// All layers.
+    pub fn all(&self) -> &wgpu::TextureView {
         &self.0.as_ref().expect("reserved before it is used").1
+    }
+
+    /// Layer `k` alone.
+    pub fn layer(&self, k: usize) -> wgpu::TextureView {
+        layer(self.texture(), k)
     }
 
     pub fn texture(&self) -> &wgpu::Texture {
@@ -42,22 +45,32 @@ impl Target {
     }
 }
 
-/// The words' texture.
+fn layer(texture: &wgpu::Texture, k: usize) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_array_layer: k as u32,
+        array_layer_count: Some(1),
+        ..Default::default()
+    })
+}
+
+/// A list of words, or of word vectors, as a texture.
 #[derive(Default)]
 pub struct List(Option<(wgpu::Texture, wgpu::TextureView)>);
 
 impl List {
-    /// Uploads whole rows.
-    pub fn write(&mut self, gpu: &Gpu, words: &[[u32; 4]]) {
+    /// Uploads whole rows, elements of 4 or 16 bytes.
+    pub fn write<T: bytemuck::NoUninit>(&mut self, gpu: &Gpu, words: &[T]) {
         let rows = words.len() / ROW;
         if self.0.as_ref().is_none_or(|(t, _)| (t.height() as usize) < rows) {
             let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-            let texture = gpu.texture("words", [ROW, rows, 1], wgpu::TextureFormat::Rgba32Uint, usage);
+            let format = if size_of::<T>() == 4 { wgpu::TextureFormat::R32Uint } else { FORMAT };
+            let texture = gpu.texture("words", [ROW, rows, 1], format, usage);
             let view = texture.create_view(&Default::default());
             self.0 = Some((texture, view));
         }
         if let Some((texture, _)) = &self.0 {
-            gpu.write(texture, 0, bytemuck::cast_slice(words), 16 * ROW, [ROW, rows]);
+            gpu.write(texture, 0, bytemuck::cast_slice(words), size_of::<T>() * ROW, [ROW, rows]);
         }
     }
 
@@ -85,7 +98,7 @@ impl Layers {
         }
         self.at = vec![None; layers];
         if self.nothing.is_none() {
-            let texture = gpu.texture("nothing", [1; 3], wgpu::TextureFormat::Rgba32Uint, DRAWN);
+            let texture = gpu.texture("nothing", [1; 3], FORMAT, DRAWN);
             self.nothing = Some(texture.create_view(&Default::default()));
         }
     }
@@ -93,7 +106,7 @@ impl Layers {
     fn make(&self, gpu: &Gpu) -> (wgpu::Texture, wgpu::TextureView) {
         let usage = DRAWN | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
         let size = [CELLS, self.size[0], self.size[1]];
-        let texture = gpu.texture("sums", size, wgpu::TextureFormat::Rgba32Uint, usage);
+        let texture = gpu.texture("sums", size, FORMAT, usage);
         let view = layered(&texture);
         (texture, view)
     }
@@ -107,12 +120,7 @@ impl Layers {
         }
         self.at[k] = Some(next);
         let view = |turn: usize| match &self.turns[turn] {
-            Some((texture, _)) => texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: k as u32,
-                array_layer_count: Some(1),
-                ..Default::default()
-            }),
+            Some((texture, _)) => layer(texture, k),
             None => unreachable!("made above"),
         };
         let nothing = || self.nothing.clone().expect("made by begin");

@@ -153,7 +153,8 @@ impl Job<'_> {
         out: &mut [f32],
     ) {
         let (sub, entries) = (self.plan.sub, self.tiles.tables.len());
-        let (lookup, table): (&Lookup, &Table) = (&self.plan.lookups[e / self.plan.channels], self.tiles.tables[e]);
+        let (lookup, table): (&Lookup, &Table) =
+            (&self.plan.lookups[e / self.plan.channels], self.tiles.tables[e]);
         let all = out.len() as u64;
         let mut boxes = 0;
         if let Some(frame) = &lookup.tilted {
