@@ -311,6 +311,7 @@ fn batches_change_nothing() {
 
 #[test]
 fn structs_are_laid_out_as_the_shaders_expect() {
+    use super::passes::{RowsParams, ShadeParams, SlopeParams, VisibilityParams};
     use super::tables::TableParams;
     use crate::gpu::tests::same_layout;
     let s = Shaders::default();
