@@ -107,7 +107,12 @@ fn pictures() -> Result<()> {
     ensure(&[Need::Node, Need::Cxx])?;
     let folder = run::root().join("docs/pictures");
     std::fs::create_dir_all(&folder)?;
-    let mut scene = std::process::Command::new(release()?);
+    let kelir = release()?;
+    let mut accuracy = std::process::Command::new(&kelir);
+    accuracy.args(["bench", "accuracy", "stimuli/scenes/benchmark.toml", "--plot"]);
+    accuracy.arg(folder.join("accuracy.svg"));
+    step("accuracy.svg", accuracy)?;
+    let mut scene = std::process::Command::new(kelir);
     scene.args([
         "render",
         "stimuli/scenes/pertemuan.toml",

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::Pixel;
 
 /// Two emitters and opaque blocks at an angle, far enough off axis that the models differ.
 const SCENE: &str = r#"
