@@ -174,6 +174,50 @@ fn a_wrong_study_names_every_problem() {
 }
 
 #[test]
+fn power_is_simulated_from_a_design_file_and_a_wrong_one_names_every_problem() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = std::fs::read_to_string(root().join("stimuli/studies/designs/shadow-puppets.toml")).unwrap();
+    let study = root().join("stimuli/studies/shadow-puppets.toml");
+    std::fs::copy(study, folder.path().join("shadow-puppets.toml")).unwrap();
+    let small = good
+        .replace("../shadow-puppets.toml", "shadow-puppets.toml")
+        .replace("[16, 32, 64, 128]", "[8, 12]")
+        .replace("simulations = 400", "simulations = 20");
+    let design = write(folder.path(), "design.toml", &small);
+    let json = folder.path().join("power.json");
+    let printed = kelir_ok(&["power", "--design", &design, "--json", json.to_str().unwrap()]);
+    for phrase in [
+        "20 simulated studies",
+        "n = 12",
+        "should not exceed",
+        "ignoring who made them",
+        "Fewest participants",
+    ] {
+        assert!(printed.contains(phrase), "no {phrase:?} in:\n{printed}");
+    }
+    let found: serde_json::Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
+    assert_eq!(found["sizes"][1]["participants"], 12);
+    assert_eq!(found["sizes"][1]["tests"][0]["rate"]["runs"], 20);
+
+    let wrong = small
+        .replace("simulations = 20", "simulations = 0")
+        .replace("icc = 0.17", "icc = 1.7")
+        .replace("[8, 12]", "[]");
+    let wrong = write(folder.path(), "wrong.toml", &wrong);
+    let unwritten = folder.path().join("none.json");
+    refused(
+        &["power", "--design", &wrong, "--json", unwritten.to_str().unwrap()],
+        &["wrong.toml", "simulations = 0", "truth[1].icc = 1.7", "participants = []"],
+    );
+    assert!(!unwritten.exists());
+    refused(
+        &["power", "--design", &write(folder.path(), "lost.toml", "study = \"nowhere.toml\"")],
+        &["nowhere.toml"],
+    );
+    refused(&["power", "--design", "no-such-file.toml"], &["no-such-file.toml"]);
+}
+
+#[test]
 fn the_shipped_scenes_are_good() {
     let mut scenes: Vec<_> = std::fs::read_dir(root().join("stimuli/scenes"))
         .unwrap()

@@ -68,7 +68,10 @@ pub(crate) fn maximise(
             return (flat || relative_step(&at, &step) < 1e-7).then(|| finished(at, here));
         };
         let change: Vec<f64> = (0..p).map(|i| next[i] - at[i]).collect();
-        let done = relative_step(&next, &change) <= TOLERANCE;
+        // Along a ridge that is level to rounding, steps stay small without ever ending; nothing is left to gain by them.
+        let gain: f64 = free.iter().map(|&i| here.gradient[i] * step[i]).sum();
+        let level = flat && gain.abs() <= 1e-21 * (1.0 + here.value.abs());
+        let done = level || relative_step(&next, &change) <= TOLERANCE;
         at = next;
         here = there;
         if done {

@@ -423,3 +423,23 @@ fn questplus_shows_the_same_stimuli() {
     close("width", curve.width, oracle["width"].as_f64().unwrap(), 1e-9);
     close("lapse", curve.lapse, oracle["lapse"].as_f64().unwrap(), 1e-9);
 }
+
+#[test]
+fn a_ridge_that_is_level_to_rounding_is_an_end() {
+    // A staircase's levels: the best curve passes 1.8 at its share exactly, and any steep one does.
+    let levels =
+        [(1.0000000000000004, 1, 2), (1.4, 10, 21), (1.8, 38, 46), (2.2, 31, 34), (2.6, 10, 11), (3.0, 6, 6)]
+            .map(|(x, correct, trials)| Level { x, correct, trials });
+    let task = Task { sigmoid: Sigmoid::Logistic, ..Task::default() };
+    let found = fit(&levels, &task).unwrap();
+    assert!(
+        (found.log_likelihood + 9.0 * (-found.curve.lapse).ln_1p() + 51.891_884_596_013_88).abs() < 1e-9,
+        "{found:?}"
+    );
+    assert!((found.curve.proportion(1.8) - 38.0 / 46.0).abs() < 1e-6);
+    let interval = profile_intervals(&levels, &task, 0.95).unwrap().threshold;
+    assert!(
+        interval.low.is_some_and(|low| low > 1.0) && interval.high.is_some_and(|high| high < 2.3),
+        "{interval:?}"
+    );
+}

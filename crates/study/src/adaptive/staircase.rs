@@ -1,6 +1,7 @@
 //! Up-down staircases: Levitt's transformed and Kaernbach's weighted ones.
 
 use super::Procedure;
+use kelir_stats::psychometric::{Level, Posterior, Task, posterior};
 use kelir_stats::{Result, StatsError};
 use serde::{Deserialize, Serialize};
 
@@ -49,7 +50,8 @@ pub struct Staircase {
     stimulus: f64,
     in_a_row: u32,
     last_move: Option<Move>,
-    trials: u32,
+    /// What was shown and whether the answer was correct.
+    answers: Vec<(f64, bool)>,
     reversals: Vec<f64>,
 }
 
@@ -64,8 +66,8 @@ enum Move {
 pub struct Bracket {
     /// The mean of the stimuli at the reversals counted; off by up to half a step.
     pub threshold: f64,
-    /// Their standard deviation over √(n/2). Reversals come in pairs that depend on each other, so this is a rough guide: for an interval fit
-    /// a psychometric function to the trials.
+    /// Their standard deviation over √(n/2). Reversals come in pairs that depend on each other, so this is a rough guide:
+    /// [`Staircase::posterior`] has the interval.
     pub standard_error: f64,
     /// Reversals counted: those at the last step size, an even number of them.
     pub reversals: u32,
@@ -124,7 +126,7 @@ impl Staircase {
             return invalid("trials", 0.0, "must be at least 1");
         }
         let stimulus = rule.start;
-        Ok(Self { rule, stimulus, in_a_row: 0, last_move: None, trials: 0, reversals: Vec::new() })
+        Ok(Self { rule, stimulus, in_a_row: 0, last_move: None, answers: Vec::new(), reversals: Vec::new() })
     }
 
     /// The stimuli at which it turned, in order.
@@ -134,7 +136,33 @@ impl Staircase {
 
     /// Trials answered.
     pub fn trials(&self) -> u32 {
-        self.trials
+        self.answers.len() as u32
+    }
+
+    /// The answers by stimulus, rising; stimuli that differ by rounding alone are one.
+    pub fn levels(&self) -> Vec<Level> {
+        let mut answers = self.answers.clone();
+        answers.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let rounding = 1e-9 * self.rule.steps.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut levels: Vec<Level> = Vec::new();
+        for (x, correct) in answers {
+            match levels.last_mut() {
+                Some(last) if x - last.x <= rounding => {
+                    last.trials += 1;
+                    last.correct += u64::from(correct);
+                }
+                _ => levels.push(Level { x, correct: u64::from(correct), trials: 1 }),
+            }
+        }
+        levels
+    }
+
+    /// The psychometric function through all answers with posterior intervals of probability `level` (psignifit's priors): the staircase
+    /// then only chose the stimuli. Profile-likelihood intervals are too short here: few stimuli lie far from the threshold.
+    ///
+    /// Errors: those of [`posterior`], such as fewer than two different stimuli so far.
+    pub fn posterior(&self, task: &Task, level: f64) -> Result<Posterior> {
+        posterior(&self.levels(), task, level, &[])
     }
 
     /// The stimulus where P(correct) is [`Track::converges_at`], from the reversals at the last step size; `None` before two of them.
@@ -171,7 +199,7 @@ impl Staircase {
 
 impl Procedure for Staircase {
     fn stimulus(&self) -> Option<f64> {
-        let ended = self.reversals.len() >= self.rule.reversals as usize || self.trials >= self.rule.trials;
+        let ended = self.reversals.len() >= self.rule.reversals as usize || self.trials() >= self.rule.trials;
         (!ended).then_some(self.stimulus)
     }
 
@@ -179,7 +207,7 @@ impl Procedure for Staircase {
         if self.stimulus().is_none() {
             return;
         }
-        self.trials += 1;
+        self.answers.push((self.stimulus, correct));
         let needed = match self.rule.track {
             Track::Transformed { down } => down,
             Track::Weighted { .. } => 1,

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use kelir_stats::psychometric::{BeliefGrid, Curve, Sigmoid};
+use kelir_stats::psychometric::{BeliefGrid, Curve, Sigmoid, Task};
 use kelir_stats::random::Random;
 use proptest::prelude::*;
 
@@ -72,6 +72,39 @@ fn staircases_converge_where_theory_says() {
         // The mean of reversals is off by up to half a step, here .007 of the proportion.
         assert!((reached - p).abs() < 0.015, "{track:?} settles at {reached}");
     }
+}
+
+#[test]
+fn a_staircases_intervals_cover_also_lapsing_observers() {
+    // 500 observers with two alternatives, thresholds of their own, every third lapsing on 5% of trials; three down, one up.
+    let track = Track::Transformed { down: 3 };
+    let plan = StaircaseRule { steps: vec![1.6, 0.8, 0.4], reversals: 400, trials: 120, ..rule(track) };
+    let task = Task { sigmoid: Sigmoid::Logistic, ..Task::default() };
+    let (mut hits, mut lapsing_hits, mut lapsing, mut halved) = (0u32, 0u32, 0u32, 0u32);
+    let observers = 500u32;
+    for index in 0..observers {
+        let mut random = Random::stream(33, u64::from(index));
+        let lapses = index % 3 == 0;
+        let truth = observer(-1.5 + 3.0 * random.uniform(), 0.5, if lapses { 0.05 } else { 0.0 });
+        let mut staircase = Staircase::new(plan.clone()).unwrap();
+        while let Some(x) = staircase.stimulus() {
+            staircase.answer(random.bernoulli(truth.proportion(x)));
+        }
+        assert_eq!(staircase.levels().iter().map(|l| l.trials).sum::<u64>(), 120);
+        let found = staircase.posterior(&task, 0.95).unwrap();
+        let (middle, t) = (found.mean.threshold, found.threshold);
+        let inside = |low: f64, high: f64| low <= truth.threshold && truth.threshold <= high;
+        let hit = inside(t.low_centred, t.high_centred);
+        hits += u32::from(hit);
+        lapsing += u32::from(lapses);
+        lapsing_hits += u32::from(lapses && hit);
+        halved += u32::from(inside(0.5 * (t.low_centred + middle), 0.5 * (t.high_centred + middle)));
+    }
+    let share = |n: u32, of: u32| f64::from(n) / f64::from(of);
+    assert!((0.92..=0.99).contains(&share(hits, observers)), "covers {hits} of {observers}");
+    assert!(share(lapsing_hits, lapsing) > 0.88, "covers {lapsing_hits} of {lapsing} lapsing observers");
+    // The negative control.
+    assert!(share(halved, observers) < 0.8, "half the interval covers {halved} of {observers}");
 }
 
 #[test]
