@@ -79,6 +79,8 @@ export interface Results {
   participants: Participants;
   blocks: Block[];
   stimuli: Stimulus[];
+  /** All conditions on one axis, in JOD; null without three of them. The report has the intervals. */
+  scale?: { conditions: string[]; jod: number[] } | null;
   /** Sessions of other versions of the study, which these results leave out. */
   other_versions?: Array<{ config_hash: string; sessions: number }>;
 }

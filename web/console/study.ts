@@ -53,7 +53,7 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
     section("head", [results.title, results.config_hash, results.other_versions], () => head(results));
     section("status", studies.find((row) => row.id === id)?.detail ?? null, () => status(studies.find((row) => row.id === id)));
     section("participants", results.participants, () => participants(results.participants, id));
-    section("choices", results.blocks, () => choices(results.blocks));
+    section("choices", [results.blocks, results.scale], () => choices(results.blocks, results.scale ?? null));
     judge(results);
     section("stimuli", results.stimuli, () => [h("h2", {}, "Stimuli"), ...(results.stimuli.length > 0 ? gallery(results.stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
     section("data", id, () => data(id));
@@ -138,13 +138,21 @@ function participants({ started, in_progress, completed }: Participants, id: str
   ];
 }
 
-function choices(blocks: readonly Block[]): Node[] {
+/** The conditions' positions in words, best first: they are there at once, where the report takes its time. */
+function positions(scale: NonNullable<Results["scale"]>): HTMLElement {
+  const best = scale.conditions.map((name, i) => ({ name, jod: scale.jod[i] ?? 0 })).sort((a, b) => b.jod - a.jod);
+  const shown = best.flatMap(({ name, jod }, i) => [i > 0 ? ", " : "", `${name} `, number(fixed(jod, 2), jod)]);
+  return h("p", { "data-testid": "scale" }, "All conditions on one scale, in JOD: ", ...shown, ".");
+}
+
+function choices(blocks: readonly Block[], scale: NonNullable<Results["scale"]> | null): Node[] {
   const table = resultsTable(blocks);
   return [
     h("h2", {}, "Choices"),
     h("div", { class: "plots" }, ...blocks.map(blockFigure)),
     h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of choices" }, table),
     h("p", { class: "quiet" }, "Number of choices of the target per participant, over those who answered every pair of the block. Two-tailed one-sample t-test against chance, half the pairs. ", copyButton("Copy the table", () => tableText(table), { class: "link" })),
+    ...(scale === null ? [] : [positions(scale)]),
   ];
 }
 
