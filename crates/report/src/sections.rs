@@ -404,7 +404,7 @@ fn citation(report: &StudyReport) -> Section {
     ];
     let mut references = report.report.references.clone();
     if report.paper.is_some() {
-        references.push("Taylor, & Cameron. Rendering Virtual Shadow Puppet Theatres. [The survey that this study repeats.]".to_owned());
+        references.push("Taylor, C., & Cameron, K. Rendering Virtual Shadow Puppet Theatres. Department of Computer Science, University of Bath. [The survey that this study repeats.]".to_owned());
     }
     references.sort();
     if !references.is_empty() {
