@@ -321,3 +321,31 @@ fn an_interrupted_render_leaves_no_half_written_file() {
     }
     assert!(absent > 0, "{whole} of 12 renders were done before they were interrupted");
 }
+
+/// Error against time on a tiny image: tables, JSON and figure; what is asked wrongly is refused and writes nothing.
+#[test]
+fn accuracy_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), str::to_owned);
+    let [json, plot] = ["a.json", "a.svg"].map(|name| folder.path().join(name));
+    let files = ["--json", json.to_str().unwrap(), "--plot", plot.to_str().unwrap()];
+    let small = ["bench", "accuracy", &scene, "--size", "64x36", "--runs", "1", "--crops", "2"];
+    refused(&[&small[..], &files, &["--only", "nothing"]].concat(), &["only", "nothing"]);
+    refused(&[&small[..], &files, &["--reference-seed", "1"]].concat(), &["reference_seed = 1"]);
+    refused(&[&small[..], &files, &["--reference-spp", "2048"]].concat(), &["reference_spp = 2048"]);
+    assert!(!json.exists() && !plot.exists());
+
+    let text = kelir_ok(&[&small[..], &files, &["--reference-spp", "4096"]].concat());
+    for phrase in ["in penumbra", "PA shadow map", "spp 2048", "lights 256", "samples 1024", "numerical RMSE"]
+    {
+        assert!(text.contains(phrase), "no {phrase:?} in\n{text}");
+    }
+    let json: serde_json::Value = serde_json::from_slice(&std::fs::read(json).unwrap()).unwrap();
+    assert_eq!(json["size"], serde_json::json!([64, 36]));
+    let results = json["results"].as_array().unwrap();
+    assert!(results.len() > 25 && results.iter().all(|r| r["measured"]["penumbra"]["rmse"].is_f64()));
+    let plot = std::fs::read_to_string(plot).unwrap();
+    for phrase in ["<svg", "PCSS", "points", "standard error of the reference"] {
+        assert!(plot.contains(phrase), "no {phrase:?} in the figure");
+    }
+}

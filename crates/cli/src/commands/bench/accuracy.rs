@@ -277,9 +277,10 @@ fn figure(report: &Report, scene: &str) -> Figure {
         if m.penumbra.rmse <= 0.0 {
             continue;
         }
-        let name = series_name(result, report);
-        let value = result.case.knob.rsplit(' ').next().map(str::to_owned);
-        let point = Point { x: m.first.median, y: m.penumbra.rmse, interval: None, label: value };
+        let (knob, value) = result.case.knob.split_once(' ').unwrap_or((&result.case.knob, ""));
+        let name = format!("{} ({knob})", series_name(result, report));
+        let label = Some(value.to_owned());
+        let point = Point { x: m.first.median, y: m.penumbra.rmse, interval: None, label };
         match series.iter_mut().find(|s| s.name == name) {
             Some(of) => of.points.push(point),
             None => {
@@ -299,9 +300,7 @@ fn figure(report: &Report, scene: &str) -> Figure {
     let [width, height] = report.size;
     let floor = report.reference.floor;
     let rules = match floor > 0.0 {
-        true => {
-            vec![Rule::Horizontal(floor, format!("standard error of the reference, {} samples", spp(report)))]
-        }
+        true => vec![Rule::Horizontal(floor, "standard error of the reference".into())],
         false => Vec::new(),
     };
     Figure {
