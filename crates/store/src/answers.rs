@@ -1,6 +1,6 @@
 //! Answers as analyses read them: only what they need, and only what has come since.
 //!
-//! sqlx hands every row from thread to thread, ten microseconds each; a million answers want a cursor. So this reads with
+//! sqlx hands every row from thread to thread, some ten microseconds each; a million answers want a cursor. So this reads with
 //! rusqlite: the same SQLite library in the same process, read-only, on as many threads as there are cores.
 
 use crate::error::StoreError;

@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> Result<()> {
             row("all of it, nothing read before", report.cold_total_s),
             row("read one answer more", report.warm_read_s),
             row("all of it, one answer more", report.warm_total_s),
-            row("kelir stats, without printing", report.command_s),
+            row("results of the folder, without a server", report.command_s),
             row("GET results, first after the start", report.http_first_s),
             row("GET results, one answer more", report.http_next_s),
         ],
