@@ -65,7 +65,8 @@ pub struct TestRate {
     pub test: &'static str,
     /// Whether the test's null hypothesis is true, so that the rate is of false alarms.
     pub null: bool,
-    /// How often it is significant at the level `alpha`; where it is not defined it finds nothing.
+    /// How often it is significant at the level `alpha`; in studies where it is not defined it finds nothing. A test that was defined in no
+    /// simulated study of any size (a random intercept with one choice each) is left out.
     pub rate: Rate,
 }
 
@@ -150,12 +151,13 @@ struct SizeSums {
     widths: Vec<(f64, u64)>,
 }
 
-/// Yes, defined, undefined.
+/// Yes, counted, undefined, and of the counted those that were defined.
 #[derive(Clone, Copy, Default)]
 struct Tally {
     hits: u64,
     runs: u64,
     undefined: u64,
+    defined: u64,
 }
 
 impl Tally {
@@ -163,16 +165,25 @@ impl Tally {
         match found {
             Some(found) => {
                 self.runs += 1;
+                self.defined += 1;
                 self.hits += u64::from(found);
             }
             None => self.undefined += 1,
         }
     }
 
+    /// A test that is not defined finds nothing.
+    fn add_test(&mut self, found: Option<bool>) {
+        self.runs += 1;
+        self.defined += u64::from(found.is_some());
+        self.hits += u64::from(found == Some(true));
+    }
+
     fn merge(&mut self, other: &Tally) {
         self.hits += other.hits;
         self.runs += other.runs;
         self.undefined += other.undefined;
+        self.defined += other.defined;
     }
 
     fn rate(&self) -> Rate {
@@ -204,11 +215,7 @@ impl Sums {
             let Outcome { tests, intervals } = claims.check(&report, crowd.design.alpha);
             sums.runs += 1;
             sums.excluded += excluded.len() as u64;
-            // A test that is not defined finds nothing.
-            sums.tests
-                .iter_mut()
-                .zip(tests)
-                .for_each(|(tally, found)| tally.add(Some(found.unwrap_or(false))));
+            sums.tests.iter_mut().zip(tests).for_each(|(tally, found)| tally.add_test(found));
             for (i, interval) in intervals.into_iter().enumerate() {
                 let truth = claims.intervals[i].truth;
                 sums.intervals[i].add(interval.zip(truth).map(|([low, high], x)| low <= x && x <= high));
@@ -233,6 +240,9 @@ impl Sums {
     }
 
     fn power(&self, design: &Design, claims: &Claims) -> Power {
+        let made: Vec<usize> = (0..claims.tests.len())
+            .filter(|&i| self.sizes.iter().any(|sums| sums.tests[i].defined > 0))
+            .collect();
         let sizes: Vec<Size> = design
             .participants
             .iter()
@@ -240,10 +250,9 @@ impl Sums {
             .map(|(&participants, sums)| Size {
                 participants,
                 excluded: sums.excluded as f64 / (sums.runs.max(1) * u64::from(participants)) as f64,
-                tests: claims
-                    .tests
+                tests: made
                     .iter()
-                    .zip(&sums.tests)
+                    .map(|&i| (&claims.tests[i], &sums.tests[i]))
                     .map(|(claim, tally)| TestRate {
                         of: claim.of.clone(),
                         test: claim.test,
@@ -265,9 +274,9 @@ impl Sums {
                     .collect(),
             })
             .collect();
-        let needed = claims
-            .tests
+        let needed = made
             .iter()
+            .map(|&i| &claims.tests[i])
             .enumerate()
             .filter(|(_, claim)| !claim.null)
             .filter_map(|(i, claim)| {

@@ -137,6 +137,25 @@ fn the_share_of_the_excluded_is_the_careless_ones_and_those_who_leave() {
 }
 
 #[test]
+fn a_test_that_nobody_can_make_is_left_out() {
+    let blocks = [("one", "pa mc", 1, ""), ("two", "pa mc", 2, "")];
+    let power = run(
+        study("", &blocks),
+        "participants = [12]\nsimulations = 20\nseed = 8\n[[truth]]\npreference = 0.7\n",
+    );
+    // One choice a participant says nothing about how participants differ; two do.
+    let mixed: Vec<&str> = power.sizes[0]
+        .tests
+        .iter()
+        .filter(|t| t.test.starts_with("random-intercept"))
+        .map(|t| t.of.as_str())
+        .collect();
+    assert_eq!(mixed, ["two"]);
+    assert_eq!(power.needed.iter().filter(|n| n.test.starts_with("random-intercept")).count(), 1);
+    assert!(power.needed.iter().any(|n| n.of == "one" && n.test.starts_with("t-test of")));
+}
+
+#[test]
 fn thresholds_are_covered_at_a_given_truth() {
     let rest = "[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"falling\"\nlabel = \"triangles\"\nlapse = 0.02";
     let power = run(
