@@ -29,9 +29,10 @@ use kelir_study::screening::Exclusion;
 use kelir_study::{Screening, StudyDefinition};
 use serde::Serialize;
 use serde_json::Value;
+use utoipa::ToSchema;
 
 /// Everything kelir can say of one version of a study, as a report or a paper's methods and results need it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct StudyReport {
     /// Study's id.
     pub study: String,
@@ -71,7 +72,7 @@ pub struct StudyReport {
 }
 
 /// How many people take part in one version of a study.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Participants {
     /// Sessions ever begun.
     pub started: u64,
@@ -82,7 +83,7 @@ pub struct Participants {
 }
 
 /// A participant who is left out.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Excluded {
     /// Session's id.
     pub session_id: String,
@@ -91,7 +92,7 @@ pub struct Excluded {
 }
 
 /// A version of the study that the results leave out.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct OtherVersion {
     /// Hash of its definition.
     pub config_hash: String,
@@ -100,7 +101,7 @@ pub struct OtherVersion {
 }
 
 /// What one pair of a study shows under one condition.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Stimulus {
     /// Pair's id.
     pub pair: String,
@@ -143,7 +144,7 @@ impl Stimulus {
 }
 
 /// What checking the stored answers found.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Chain {
     /// Rows that were checked, up to and including a broken one.
     pub rows: u64,

@@ -2,6 +2,7 @@
 //! from the counts that its printed summaries imply, what they leave out, and a printed t that no data give.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::Result;
 use crate::inference::{
@@ -11,7 +12,7 @@ use crate::inference::{
 };
 
 /// What the paper prints about one comparison, to three decimals.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Printed {
     /// Mean number of PA images chosen.
     pub mean: f64,
@@ -22,7 +23,7 @@ pub struct Printed {
 }
 
 /// One comparison of the paper, computed again.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Comparison {
     /// `still-mc`, `still-photo` or `animation-mc`.
     pub id: &'static str,
@@ -60,7 +61,7 @@ pub struct Comparison {
 }
 
 /// A split of binary answers and its t.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Split {
     /// Participants.
     pub n: u64,
@@ -71,7 +72,7 @@ pub struct Split {
 }
 
 /// Whether the printed t of the third comparison can come from any data.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct PrintedT {
     /// The t in question.
     pub printed: f64,
@@ -88,7 +89,7 @@ pub struct PrintedT {
 }
 
 /// The whole replication.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Replication {
     /// The three comparisons in the paper's order.
     pub comparisons: Vec<Comparison>,

@@ -6,11 +6,12 @@ use kelir_stats::inference::t_test_from_counts;
 use kelir_stats::pairwise::{Scale, ScaleOptions, Wins, scale};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// A block's choices of the target per participant, and the paper's two-tailed one-sample t-test of them.
 ///
 /// Who counts: participants who answered *all* of the block's pairs, whether or not they went on to finish the study.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct BlockSummary {
     /// Block's id.
     pub id: String,
@@ -107,7 +108,7 @@ pub(crate) const TOO_FEW_CONDITIONS: &str =
     "A scale needs three conditions; two are compared by their proportion.";
 
 /// A two-tailed one-sample t-test of a table of counts; a number that is not defined is `None` and the note says why.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct TTest {
     /// Observations.
     pub n: u64,

@@ -5,9 +5,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// A study as its file defines it; every value has been checked.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StudyDefinition {
     /// The file's name without `.toml`; stands in addresses and data.
     pub id: String,
@@ -40,7 +41,7 @@ pub struct StudyDefinition {
 }
 
 /// The code at the end and where it leads.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Completion {
     /// One code for all (recruiting panels ask for it); absent: each session gets its own.
     pub code: Option<String>,
@@ -49,7 +50,7 @@ pub struct Completion {
 }
 
 /// What participants read; each text is a list of plain paragraphs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Texts {
     /// First page.
     pub welcome: Vec<String>,
@@ -64,7 +65,7 @@ pub struct Texts {
 }
 
 /// Where the pictures of a condition come from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(tag = "source", rename_all = "lowercase")]
 pub enum Condition {
     /// Drawn from each pair's scene.
@@ -84,7 +85,7 @@ pub enum Condition {
 }
 
 /// Pairs of the same two conditions, shown together and analysed together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Block {
     /// Identifier, unique in the study.
     pub id: String,
@@ -108,7 +109,7 @@ pub struct Block {
 
 /// A psychometric function of a block: how the share of target choices depends on the pairs' level. With two pictures to choose from,
 /// the guess rate is ½.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Psychometric {
     /// Its shape.
     pub function: Sigmoid,
@@ -125,7 +126,7 @@ pub struct Psychometric {
 }
 
 /// Which way a psychometric function runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
     /// From guessing at low levels up.
@@ -148,7 +149,7 @@ impl Direction {
 pub const GUESS: f64 = 0.5;
 
 /// What is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// One image.
@@ -158,7 +159,7 @@ pub enum Kind {
 }
 
 /// One scene shown under both conditions of its block.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Pair {
     /// Identifier, unique in the study.
     pub id: String,
@@ -170,7 +171,7 @@ pub struct Pair {
 }
 
 /// Whose answers are set aside, decided before there are any.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Screening {
     /// A trial answered faster than this counts as too fast, in ms; absent: none does.
     pub min_rt_ms: Option<f64>,

@@ -3,9 +3,10 @@
 use crate::answers::{Given, Participant, blocks};
 use crate::definition::StudyDefinition;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Why a participant is left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(tag = "reason", rename_all = "snake_case")]
 pub enum Exclusion {
     /// Too many answers faster than `min_rt_ms`.

@@ -4,12 +4,13 @@ use crate::normal;
 use crate::random::Random;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// The fewest resamples an interval is taken from.
 pub const MIN_REPLICATES: usize = 2000;
 
 /// How the interval is read off the resampled statistics.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BootstrapMethod {
     /// The quantiles of the replicates.
@@ -20,7 +21,7 @@ pub enum BootstrapMethod {
 }
 
 /// A bootstrap interval.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Bootstrap {
     /// The statistic of the sample itself.
     pub estimate: f64,

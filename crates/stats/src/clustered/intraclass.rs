@@ -5,9 +5,10 @@ use crate::betabinomial;
 use crate::optimise::{Local, maximise};
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// How the intraclass correlation is estimated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum IccEstimator {
     /// Fleiss & Cuzick (1979): 1 − Σ yᵢ(nᵢ − yᵢ)/nᵢ / ((N − m) p(1 − p)), with p the pooled proportion. With two trials each this is
@@ -21,7 +22,7 @@ pub enum IccEstimator {
 }
 
 /// How alike the choices of one participant are.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Intraclass {
     /// Which estimator gave it.
     pub estimator: IccEstimator,
@@ -122,7 +123,7 @@ fn beta_binomial(clusters: &[Cluster], pooled: f64) -> Result<(f64, f64)> {
 }
 
 /// A finding: a test that counts trials as independent was asked of data in which participants gave several.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct IndependenceWarning {
     /// Participants with at least one trial.
     pub participants: u64,

@@ -5,9 +5,10 @@ use crate::normal;
 use crate::optimise::{Local, Maximum, maximise};
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Trials of one participant that share their predictors.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
     /// Whose choices these are (any numbering).
@@ -36,7 +37,7 @@ impl Row {
 }
 
 /// The small-sample factor on the cluster-robust variance (Cameron & Miller 2015; names as in R's clubSandwich).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum Correction {
     /// None: biased down with few participants.
@@ -49,7 +50,7 @@ pub enum Correction {
 }
 
 /// One coefficient on the log-odds scale.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Coefficient {
     /// Log odds (ratio).
     pub estimate: f64,
@@ -66,7 +67,7 @@ pub struct Coefficient {
 }
 
 /// A logistic regression whose standard errors allow any dependence within participants.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RobustLogit {
     /// In the order of the predictors; p and interval from t with `df`.
     pub coefficients: Vec<Coefficient>,

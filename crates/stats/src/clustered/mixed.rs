@@ -6,9 +6,10 @@ use crate::normal;
 use crate::optimise::{Local, maximise};
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Participants' log odds scatter normally about the fixed effects: logit P = xβ + σz, z ~ N(0, 1) a participant.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MixedLogit {
     /// For a participant at the centre (z = 0), in the order of the predictors; p and 95% interval from the normal.
     pub coefficients: Vec<Coefficient>,

@@ -21,9 +21,10 @@ pub use mixed::{MixedLogit, mixed_logit};
 
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// One participant's forced choices: how many of `trials` went to the target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cluster {
     /// Choices of the target, ≤ `trials`.

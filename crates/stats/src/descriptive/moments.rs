@@ -1,6 +1,7 @@
 //! Mean, variance and standard deviation.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::distributions::dd::Dd;
 use crate::{Result, StatsError};
@@ -9,7 +10,7 @@ use crate::{Result, StatsError};
 ///
 /// Two passes in double-double over values scaled by a power of two: the result is that of exact arithmetic on the
 /// `f64` inputs, rounded. (One-pass and Welford's formulas lose digits on NIST's Mavro and Michelso sets.)
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Moments {
     /// How many values.
     pub n: u64,

@@ -1,6 +1,7 @@
 //! Autocorrelation and one-way analysis of variance.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::Moments;
 use crate::distributions::FisherF;
@@ -30,7 +31,7 @@ pub fn autocorrelation(values: &[f64], lag: usize) -> Result<f64> {
 }
 
 /// A one-way analysis of variance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct OneWayAnova {
     /// Groups − 1.
     pub df_between: f64,

@@ -1,12 +1,13 @@
 //! Agreement of several raters.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::distributions::normal;
 use crate::{Result, StatsError};
 
 /// Agreement beyond chance of a fixed number of raters on unordered categories.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct FleissKappa {
     /// Items rated.
     pub items: usize,

@@ -1,6 +1,7 @@
 //! The Bayes factor of a one-sample t-test.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::TTest;
 use crate::distributions::quadrature::integrate_peak;
@@ -10,7 +11,7 @@ use crate::{Result, StatsError};
 pub const ORDINARY_PRIOR_SCALE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// How much likelier the data are under one hypothesis than under the other.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct JzsBayesFactor {
     /// Scale of the Cauchy prior on the standardised effect.
     pub prior_scale: f64,

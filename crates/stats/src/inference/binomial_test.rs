@@ -1,13 +1,14 @@
 //! The exact binomial test, and the sign test which is one.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::check_successes;
 use crate::distributions::Binomial;
 use crate::{Result, StatsError};
 
 /// What an exact binomial test says.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct BinomialTest {
     /// Trials.
     pub n: u64,

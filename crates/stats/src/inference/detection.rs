@@ -1,13 +1,14 @@
 //! Sensitivity in forced choice.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::{Interval, check_successes, clopper_pearson};
 use crate::distributions::normal;
 use crate::{Result, StatsError};
 
 /// What to do when all (or none) of the answers are correct, so that d′ would be infinite.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ExtremeRates {
     /// Refuse them.
@@ -19,7 +20,7 @@ pub enum ExtremeRates {
 }
 
 /// Sensitivity of an observer in two-alternative forced choice.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Dprime {
     /// √2 Φ⁻¹(proportion correct), in standard deviations of the internal noise; negative below chance.
     pub dprime: f64,

@@ -1,6 +1,7 @@
 //! Standardised mean differences.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::{Interval, TTest, tail_of};
 use crate::Result;
@@ -8,7 +9,7 @@ use crate::distributions::NoncentralT;
 use crate::distributions::special::ln_gamma;
 
 /// How far a mean lies from its null value, in standard deviations.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct EffectSize {
     /// Cohen's d = (mean − mu) / sd, with its sign. (For pairs: of the differences, also written d_z.)
     pub d: f64,

@@ -1,13 +1,14 @@
 //! Equivalence: is a mean close enough to its null value?
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::{Interval, TTest};
 use crate::distributions::StudentT;
 use crate::{Result, StatsError};
 
 /// How far a mean may lie from its null value and still count as equivalent to it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Bounds {
     /// ± so many units of the values.
@@ -17,7 +18,7 @@ pub enum Bounds {
 }
 
 /// What two one-sided tests say (TOST, Schuirmann 1987).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Equivalence {
     /// The bounds as asked for.
     pub bounds: Bounds,

@@ -15,6 +15,7 @@ mod ranks;
 mod t_test;
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::{Result, StatsError};
 
@@ -33,7 +34,7 @@ pub use ranks::{RankMethod, SignedRank, wilcoxon_signed_rank};
 pub use t_test::{TTest, t_test_from_counts, t_test_one_sample, t_test_paired};
 
 /// A confidence (or credible) interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Interval {
     /// Lower end.
     pub low: f64,

@@ -1,6 +1,7 @@
 //! How likely a test is to find an effect, and how many participants that takes.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use super::binomial_test::{minimum_likelihood, partition};
 use crate::distributions::{Binomial, NoncentralT, StudentT, normal, root};
@@ -10,7 +11,7 @@ use crate::{Result, StatsError};
 const MOST: u64 = 1_000_000;
 
 /// A one-sample or paired t-test that is planned.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TPlan {
     /// Participants (pairs).
     pub n: u64,
@@ -90,7 +91,7 @@ pub fn detectable_effect_t(n: u64, alpha: f64, power: f64) -> Result<TPlan> {
 }
 
 /// An exact binomial test that is planned.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct BinomialPlan {
     /// Trials.
     pub n: u64,

@@ -1,12 +1,13 @@
 //! Wilcoxon's signed-rank test.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::distributions::normal;
 use crate::{Result, StatsError};
 
 /// How a p-value was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RankMethod {
     /// From all 2ⁿ signs, ties included.
@@ -16,7 +17,7 @@ pub enum RankMethod {
 }
 
 /// What Wilcoxon's signed-rank test says.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct SignedRank {
     /// Values that differ from mu; the others are left out, as Wilcoxon did.
     pub n: u64,

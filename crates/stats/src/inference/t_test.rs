@@ -1,13 +1,14 @@
 //! Student's t-test of one sample and of paired samples, two-sided.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::descriptive::Moments;
 use crate::distributions::student_t::StudentT;
 use crate::{Result, StatsError};
 
 /// What a one-sample (or paired) t-test says.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TTest {
     /// How many values (pairs).
     pub n: u64,

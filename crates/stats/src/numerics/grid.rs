@@ -1,6 +1,7 @@
 //! The distributions on a grid of reference values.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::distributions::{Beta, Binomial, ChiSquared, FisherF, NoncentralT, StudentT, normal};
 use crate::{Result, StatsError};
@@ -9,7 +10,7 @@ use crate::{Result, StatsError};
 const GRID: &str = include_str!("../../tests/data/distributions.tsv");
 
 /// One line of the grid, computed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct GridPoint {
     /// Which function.
     pub function: &'static str,
@@ -43,7 +44,7 @@ impl GridPoint {
 }
 
 /// The worst relative error of one function over one range of sizes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct WorstError {
     /// Which function.
     pub function: &'static str,

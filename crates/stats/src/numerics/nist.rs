@@ -1,6 +1,7 @@
 //! The Statistical Reference Datasets of NIST (sources in `tests/data/nist/README.md`).
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 use crate::Result;
 use crate::descriptive::{Moments, autocorrelation, one_way_anova};
@@ -20,7 +21,7 @@ const ANOVA: [(&str, &str); 9] = [
 ];
 
 /// One certified statistic, computed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Certified {
     /// NIST's name of the data set.
     pub set: &'static str,

@@ -6,9 +6,10 @@ use crate::clustered::{check_replicates, quantile, standard_deviation};
 use crate::random::Random;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// A scale with what its observers' differences do to it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScaleIntervals {
     /// The scale of all observers.
     pub scale: Scale,
@@ -31,7 +32,7 @@ pub struct ScaleIntervals {
 }
 
 /// A condition's percentile interval, in JOD.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ConditionInterval {
     /// Its name.
     pub condition: String,
@@ -46,7 +47,7 @@ pub struct ConditionInterval {
 }
 
 /// The percentile interval of a difference of two conditions, in JOD.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct DifferenceInterval {
     /// The condition subtracted from.
     pub a: String,

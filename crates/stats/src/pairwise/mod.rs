@@ -22,9 +22,10 @@ pub use triads::{CircularTriads, circular_triads};
 
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// How often each condition was chosen over each other one.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Wins {
     conditions: usize,
     /// Row-major n × n: entry (i, j) counts choices of i over j.
@@ -124,7 +125,7 @@ struct Pair {
 }
 
 /// One observer's choices, in a sparse form that stays small with many conditions.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Observer {
     /// Who.
@@ -134,7 +135,7 @@ pub struct Observer {
 }
 
 /// A choice of one condition over another, by index.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Choice {
     /// The condition chosen.

@@ -3,9 +3,10 @@
 use crate::clustered::{logistic, softplus};
 use crate::normal;
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// How the proportion of choices follows from the difference of two conditions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
     /// Thurstone's Case V: equal, independent Gaussian noise; P = Φ(d / 1.4826…) with d in JOD.

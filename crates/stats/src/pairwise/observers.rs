@@ -5,9 +5,10 @@ use super::{Estimator, Observer, ScaleOptions, graph, pool, scale};
 use crate::clustered::quantile;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// One observer against the scale of the others.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ObserverFit {
     /// Who.
     pub id: String,

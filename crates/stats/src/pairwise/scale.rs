@@ -7,9 +7,10 @@ use crate::normal;
 use crate::optimise::{Local, Maximum, maximise};
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// What is maximised.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Estimator {
     /// The likelihood where it has a finite maximum, else the likelihood times Jeffreys' prior; the result says which.
@@ -23,7 +24,7 @@ pub enum Estimator {
 }
 
 /// Where the scale has its zero.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Origin {
     /// The mean of the conditions.
@@ -34,7 +35,7 @@ pub enum Origin {
 }
 
 /// How to scale.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ScaleOptions {
     /// Gaussian or logistic.
@@ -46,7 +47,7 @@ pub struct ScaleOptions {
 }
 
 /// Positions of conditions on one axis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Scale {
     /// The conditions' names.
     pub conditions: Vec<String>,

@@ -4,9 +4,10 @@ use super::Wins;
 use crate::normal;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// How often one observer's choices run in a circle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CircularTriads {
     /// Triads of conditions all of whose three pairs have a majority choice.
     pub triads: u64,

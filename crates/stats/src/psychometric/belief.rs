@@ -3,9 +3,10 @@
 use super::{Curve, Sigmoid};
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// What is thought possible before the first trial.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BeliefGrid {
     /// The curve.
@@ -35,7 +36,7 @@ pub struct Belief {
 }
 
 /// A parameter's marginal posterior in five numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Estimate {
     /// Posterior mean.
     pub mean: f64,

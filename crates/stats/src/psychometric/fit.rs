@@ -7,9 +7,10 @@ use crate::normal;
 use crate::optimise::{Local, Maximum, maximise};
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// A psychometric function with numbers for its parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Curve {
     /// Its shape.
     pub sigmoid: Sigmoid,
@@ -70,7 +71,7 @@ impl Curve {
 }
 
 /// A fitted psychometric function.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Fit {
     /// The curve.
     pub curve: Curve,

@@ -7,9 +7,10 @@ use crate::optimise::maximise;
 use crate::random::Random;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// The deviance of a fit and how large it would be by chance.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct GoodnessOfFit {
     /// The maximum-likelihood fit.
     pub fit: Fit,

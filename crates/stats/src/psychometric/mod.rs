@@ -27,9 +27,10 @@ pub use sigmoid::{Scaling, Sigmoid};
 
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// The answers at one stimulus level.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Level {
     /// The stimulus, in any unit in which the proportion of correct answers rises with x (negate one that falls; take log10 of an intensity
@@ -42,7 +43,7 @@ pub struct Level {
 }
 
 /// What is known of the lapse rate λ.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Lapse {
     /// Estimated with the prior Beta(1, 10): mean .09, density falling from 0.
@@ -53,7 +54,7 @@ pub enum Lapse {
 }
 
 /// The task and the curve that is fitted to it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Task {
     /// The curve.

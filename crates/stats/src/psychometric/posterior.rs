@@ -5,6 +5,7 @@ use super::{Curve, Lapse, Level, Levels, Task, priors};
 use crate::optimise::{Local, maximise};
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Points a side of the grids: the coarse one finds where the mass is, the fine one measures it. psignifit's numbers.
 /// The parameters in the order threshold, width, lapse, eta.
@@ -14,7 +15,7 @@ const FINE: [usize; PARAMETERS] = [40, 40, 20, 20];
 const NEGLIGIBLE: f64 = 1e-5;
 
 /// The posterior of a psychometric function.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Posterior {
     /// Where the posterior density is highest (found by Newton's method, not on the grid).
     pub map: Curve,
@@ -35,7 +36,7 @@ pub struct Posterior {
 }
 
 /// One parameter's marginal posterior.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ParameterPosterior {
     /// The grid; one value if the parameter is fixed.
     pub grid: Vec<f64>,
@@ -55,7 +56,7 @@ pub struct ParameterPosterior {
 }
 
 /// The posterior of a threshold at a scaled proportion (of correct answers, guesses and lapses included).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ThresholdPosterior {
     /// The proportion of correct answers.
     pub proportion: f64,

@@ -6,9 +6,10 @@ use super::{Fit, Level, Levels, Task};
 use crate::optimise::maximise;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// The fit with likelihood intervals.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ProfileIntervals {
     /// The maximum.
     pub fit: Fit,
@@ -21,7 +22,7 @@ pub struct ProfileIntervals {
 }
 
 /// All values whose likelihood, the other parameters at their best, is within χ²₁'s quantile of the maximum.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ProfileInterval {
     /// Lower end; `None` where the data don't bound it within the range searched by [`fit`](super::fit).
     pub low: Option<f64>,

@@ -3,9 +3,10 @@
 use crate::clustered::logistic;
 use crate::normal;
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// The shape of the curve F between guessing and lapsing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sigmoid {
     /// The cumulative Gaussian; σ = width / 3.2897.
@@ -18,7 +19,7 @@ pub enum Sigmoid {
 }
 
 /// Which proportion a threshold is asked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scaling {
     /// Of the curve F itself, 0 to 1 without guesses and lapses: psignifit's `thresh_PC`.

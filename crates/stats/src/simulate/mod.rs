@@ -17,9 +17,10 @@ use crate::normal;
 use crate::random::Random;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// A proportion of simulated studies, with the simulation's own uncertainty.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Rate {
     /// hits / runs.
     pub rate: f64,

@@ -6,9 +6,10 @@ use crate::normal;
 use crate::random::Random;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// A survey in which each participant chooses one of two in some pairs, as in the paper.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PreferenceDesign {
     /// Participants analysed.
@@ -33,7 +34,7 @@ fn five_percent() -> f64 {
 }
 
 /// How often the design finds a preference; with `preference` = ½ these are the tests' false alarms.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PreferencePower {
     /// By the t-test over participants' counts (the paper's), which takes a study where all counts are alike and not at chance as found.
     pub t_test: Rate,

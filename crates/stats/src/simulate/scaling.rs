@@ -6,9 +6,10 @@ use crate::pairwise::{Choice, Observer, ScaleOptions, observer_intervals};
 use crate::random::Random;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Observers who judge every pair of conditions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScaleDesign {
     /// The conditions' true positions, in JOD.
@@ -33,7 +34,7 @@ fn ninety_five() -> f64 {
 }
 
 /// What the design shows of its conditions' differences.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScalePower {
     /// For each pair (i < j, row by row) how often its observer-bootstrap interval leaves out 0.
     pub found: Vec<Rate>,

@@ -5,9 +5,10 @@ use crate::psychometric::{Curve, Level, Task, profile_intervals};
 use crate::random::Random;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// Observers measured by the method of constant stimuli.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ThresholdDesign {
     /// The true curve of the average observer (its lapse rate and η included).
@@ -32,7 +33,7 @@ fn ninety_five() -> f64 {
 }
 
 /// How the estimated thresholds (unscaled, F = ½) lie around the true ones.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ThresholdPrecision {
     /// Mean error, in the unit of x.
     pub bias: f64,

@@ -4,9 +4,10 @@ use super::Procedure;
 use kelir_stats::psychometric::{Belief, BeliefGrid, Curve, Estimate};
 use kelir_stats::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// A QUEST+ procedure before its first trial.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QuestPlusRule {
     /// What can be shown and what is thought possible. Thresholds should reach past where any observer's is, or the interval is cut there.

@@ -4,9 +4,10 @@ use super::Procedure;
 use kelir_stats::psychometric::{Level, Posterior, Task, posterior};
 use kelir_stats::{Result, StatsError};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// What a staircase does with the answers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Track {
     /// Harder after `down` correct answers in a row, easier after each wrong one: converges where P(correct) = .5^(1/down) (Levitt 1971):
@@ -24,7 +25,7 @@ pub enum Track {
 }
 
 /// A staircase before its first trial.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StaircaseRule {
     /// Which answers move it.
@@ -62,7 +63,7 @@ enum Move {
 }
 
 /// Where a staircase ended.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Bracket {
     /// The mean of the stimuli at the reversals counted; off by up to half a step.
     pub threshold: f64,

@@ -17,9 +17,10 @@ use crowd::Crowd;
 use findings::{Claims, Outcome};
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
+use utoipa::ToSchema;
 
 /// What simulated studies of several sizes found.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Power {
     /// Study's id.
     pub study: String,
@@ -44,7 +45,7 @@ pub struct Power {
 }
 
 /// Simulated studies of one size.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Size {
     /// Participants who began.
     pub participants: u32,
@@ -57,7 +58,7 @@ pub struct Size {
 }
 
 /// How often a test says yes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct TestRate {
     /// Block's id, or two conditions.
     pub of: String,
@@ -71,7 +72,7 @@ pub struct TestRate {
 }
 
 /// How often an interval holds what is true.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct IntervalRate {
     /// Block's id, or two conditions.
     pub of: String,
@@ -86,7 +87,7 @@ pub struct IntervalRate {
 }
 
 /// The fewest participants for a wanted power.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Needed {
     /// Block's id, or two conditions.
     pub of: String,

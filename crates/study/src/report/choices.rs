@@ -13,6 +13,7 @@ use kelir_stats::inference::{
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// Level of every interval.
 pub const LEVEL: f64 = 0.95;
@@ -26,7 +27,7 @@ pub const DETECTION_POWER: f64 = 0.8;
 pub const POWER_EFFECTS: [f64; 3] = [0.2, 0.5, 0.8];
 
 /// Numbers of target choices per participant, judged.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct ChoiceAnalysis {
     /// The paper's two-tailed t-test against half the pairs.
     pub t_test: TTest,
@@ -61,7 +62,7 @@ pub struct ChoiceAnalysis {
 }
 
 /// A share of choices.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Proportion {
     /// Choices of the target.
     pub chosen: u64,

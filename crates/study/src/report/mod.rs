@@ -18,9 +18,10 @@ use kelir_stats::inference::holm;
 use kelir_stats::pairwise::ScaleIntervals;
 use serde::Serialize;
 use std::ops::Range;
+use utoipa::ToSchema;
 
 /// A study judged.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Report {
     /// Each block, in study order.
     pub blocks: Vec<BlockReport>,
@@ -37,7 +38,7 @@ pub struct Report {
 }
 
 /// A block judged.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct BlockReport {
     /// Counts and the paper's test.
     #[serde(flatten)]
@@ -59,7 +60,7 @@ pub struct BlockReport {
 }
 
 /// One pair of a block.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct PairReport {
     /// Pair's id.
     pub id: String,
@@ -68,7 +69,7 @@ pub struct PairReport {
 }
 
 /// Quartiles by linear interpolation between order statistics (R's type 7).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Quartiles {
     /// Number of values.
     pub n: u64,

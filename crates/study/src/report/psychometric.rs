@@ -10,6 +10,7 @@ use kelir_stats::psychometric::{
 };
 use serde::Serialize;
 use std::ops::Range;
+use utoipa::ToSchema;
 
 /// Observers simulated for the goodness of fit.
 const SIMULATIONS: usize = 1000;
@@ -17,7 +18,7 @@ const SIMULATIONS: usize = 1000;
 const CURVE_POINTS: usize = 121;
 
 /// A block's psychometric function with its data, everything in the levels of the study file.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct PsychometricReport {
     /// What was asked for: shape, direction, label and unit of the level.
     pub asked: Psychometric,
@@ -32,7 +33,7 @@ pub struct PsychometricReport {
 }
 
 /// The choices at one level.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct LevelPoint {
     /// The level.
     pub level: f64,
@@ -41,7 +42,7 @@ pub struct LevelPoint {
 }
 
 /// A fitted psychometric function.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct PsychometricFit {
     /// Level at which the curve is halfway between guessing and lapsing (F = ½, unscaled), where the posterior is highest.
     pub threshold: Parameter,
@@ -62,7 +63,7 @@ pub struct PsychometricFit {
 }
 
 /// A parameter of the curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Parameter {
     /// Where the posterior density is highest.
     pub value: f64,
@@ -75,7 +76,7 @@ pub struct Parameter {
 }
 
 /// The level at which the target's share reaches a given value, guesses and lapses included.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct ThresholdAt {
     /// The share of target choices.
     pub share: f64,
@@ -88,7 +89,7 @@ pub struct ThresholdAt {
 }
 
 /// Does the curve hold the data?
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Goodness {
     /// Twice the ln likelihood missed against a free share at each level.
     pub deviance: f64,
@@ -103,7 +104,7 @@ pub struct Goodness {
 }
 
 /// One point of a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct CurvePoint {
     /// The level.
     pub level: f64,

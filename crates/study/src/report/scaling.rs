@@ -9,12 +9,13 @@ use kelir_stats::pairwise::{
     pool,
 };
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Above this many observers none is looked at alone: each costs a fit of all the others.
 const MOST_SCREENED: usize = 2000;
 
 /// How far observers contradict the one axis and themselves.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Consistency {
     /// Circular triads over all observers.
     pub triads: Triads,
@@ -26,7 +27,7 @@ pub struct Consistency {
 }
 
 /// Circular triads (a over b, b over c, c over a), summed over observers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Triads {
     /// Triads whose three pairs one observer answered with a majority each.
     pub triads: u64,
