@@ -24,7 +24,7 @@ export interface Block {
   kind: "still" | "animation";
   conditions: [string, string];
   target: string;
-  pairs: number;
+  items: number;
   /** Participants who answered every pair of the block. */
   n: number;
   /** Participants who answered some, left out. */
@@ -126,7 +126,7 @@ export interface Analysis {
 export interface BlockReport extends Block {
   p_holm: number | null;
   analysis: Analysis;
-  by_pair: Array<{ id: string; target: Proportion | null }>;
+  by_item: Array<{ id: string; target: Proportion | null }>;
   left: Proportion | null;
   rt_ms: { n: number; q1: number; median: number; q3: number } | null;
 }

@@ -20,9 +20,9 @@ export function figure(width: number, height: number, title: string, description
 export function choiceDistribution(block: Block): SVGSVGElement {
   const [width, height] = [340, 204];
   const box = { left: 12, right: width - 12, top: 44, bottom: height - 42 };
-  const counts = Array.from({ length: block.pairs + 1 }, (_, k) => block.counts[String(k)] ?? 0);
+  const counts = Array.from({ length: block.items + 1 }, (_, k) => block.counts[String(k)] ?? 0);
   const most = Math.max(1, ...counts);
-  const slot = (box.right - box.left) / (block.pairs + 1);
+  const slot = (box.right - box.left) / (block.items + 1);
   const x = (choices: number) => box.left + slot * (choices + 0.5);
   const y = (n: number) => box.bottom - ((box.bottom - box.top - 22) * n) / most;
   const summary = counts.map((n, k) => `${n} chose ${block.target} ${k} times`).join(", ");
@@ -38,7 +38,7 @@ export function choiceDistribution(block: Block): SVGSVGElement {
   });
   svg.append(
     s("line", { class: "axis", x1: box.left, x2: box.right, y1: box.bottom, y2: box.bottom }),
-    s("text", { class: "label", x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, `choices of ${block.target}, of ${block.pairs}`),
+    s("text", { class: "label", x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, `choices of ${block.target}, of ${block.items}`),
     s("line", { class: "chance", x1: x(block.mu), x2: x(block.mu), y1: box.top - 8, y2: box.bottom }),
   );
   // Two labels on one line: each on its own side, so that they never meet.

@@ -10,7 +10,7 @@ const percent = (x: number) => `${fixed(100 * x, 0)}%`;
 
 /** Every part of the report that has something to say; `width` is the room for plots, CSS pixels. */
 export function drawReport(report: Report, width: number): Node[] {
-  const answered = report.blocks.filter((block) => block.n > 0 || block.by_pair.some((pair) => pair.target !== null));
+  const answered = report.blocks.filter((block) => block.n > 0 || block.by_item.some((pair) => pair.target !== null));
   if (answered.length === 0) return [h("h2", {}, "Beyond the t-test"), h("p", { class: "empty" }, "Effect sizes, intervals, equivalence and Bayes factors appear here with the first answers.")];
   return [
     h("h2", {}, "Beyond the t-test"),
@@ -34,7 +34,7 @@ function preferences(blocks: readonly BlockReport[]): Node[] {
   };
   const rows = blocks.flatMap((block) => [
     row(block.title, block.analysis.proportion, { strong: true, note: `chose ${block.target}` }),
-    ...(block.by_pair.length > 1 ? block.by_pair.map((pair) => row(pair.id, pair.target, {})) : []),
+    ...(block.by_item.length > 1 ? block.by_item.map((pair) => row(pair.id, pair.target, {})) : []),
   ]);
   const axis = { from: 0, to: 1, mark: 0.5, name: "share of choices", ticks: [0, 0.25, 0.5, 0.75, 1].map((t): [number, string] => [t, percent(t)]) };
   return [h("h3", {}, "Who preferred what"), strips(rows, axis, "Dot: share of choices. Line: 95% interval; of a block from resampled participants, of a pair Wilson's. Dotted: chance.")];

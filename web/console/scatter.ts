@@ -16,7 +16,7 @@ interface Point {
 /** Every stimulus with a measured error and answers: its RMSE in penumbra, and the share of participants who preferred it. */
 export function points(blocks: readonly BlockReport[], stimuli: readonly Stimulus[]): Point[] {
   return blocks.flatMap((block) =>
-    block.by_pair.flatMap(({ id, target }) =>
+    block.by_item.flatMap(({ id, target }) =>
       stimuli
         .filter((stimulus) => stimulus.pair === id && target !== null && block.conditions.includes(stimulus.condition))
         .flatMap(({ condition, provenance }): Point[] => {

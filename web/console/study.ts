@@ -158,7 +158,7 @@ function choices(blocks: readonly Block[], scale: NonNullable<Results["scale"]> 
 
 function blockFigure(block: Block): HTMLElement {
   const [first, second] = block.conditions;
-  const what = `${first} against ${second}, ${count(block.pairs, "pair")} of ${block.kind === "still" ? "stills" : "animations"}`;
+  const what = `${first} against ${second}, ${count(block.items, "pair")} of ${block.kind === "still" ? "stills" : "animations"}`;
   const plot =
     block.n > 0
       ? choiceDistribution(block)

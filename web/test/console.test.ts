@@ -14,7 +14,7 @@ const stimulus = (pair: string, condition: string, rmse: number | null): Stimulu
 const block = (pair: string, chosen: number): BlockReport =>
   ({
     ...{ id: "b", target: "pa", conditions: ["pa", "mc"] },
-    by_pair: [{ id: pair, target: { chosen, trials: 32, proportion: chosen / 32, wilson: { low: 0.1, high: 0.4 }, by_participant: null } }],
+    by_item: [{ id: pair, target: { chosen, trials: 32, proportion: chosen / 32, wilson: { low: 0.1, high: 0.4 }, by_participant: null } }],
   }) as unknown as BlockReport;
 
 test("who did not prefer the target preferred the other, interval and all", () => {

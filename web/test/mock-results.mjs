@@ -1,6 +1,6 @@
 // The researcher's routes of the mock server: the source paper's counts, and a study that nobody has taken yet.
 const block = (id, title, kind, conditions, counts, test) => ({
-  ...{ id, title, kind, conditions, target: "pa", pairs: counts.length - 1 },
+  ...{ id, title, kind, conditions, target: "pa", items: counts.length - 1 },
   n: counts.reduce((a, b) => a + b, 0),
   incomplete: 0,
   counts: Object.fromEntries(counts.map((n, k) => [k, n])),
@@ -41,7 +41,7 @@ const judged = [
     ...paper[0],
     p_holm: 0.16056941534857747,
     analysis: analysis(-0.248, 0.0114, 0.087, 2.1, share(26, 64, 0.118, around(0.406, 0.125)), 0.093, -0.379, ["A difference that is not significant is not shown to be absent: see the tests of equivalence and the Bayes factor.", unlike]),
-    by_pair: [{ id: "stills-1", target: share(12, 32, 0.16) }, { id: "stills-2", target: share(14, 32, 0.165) }],
+    by_item: [{ id: "stills-1", target: share(12, 32, 0.16) }, { id: "stills-2", target: share(14, 32, 0.165) }],
     left: share(33, 64, 0.12),
     rt_ms: { n: 64, q1: 2310, median: 3420.5, q3: 5204 },
   },
@@ -49,7 +49,7 @@ const judged = [
     ...paper[1],
     p_holm: 0.000611346,
     analysis: analysis(0.726, 0.5, 0.89, 0.0071, share(48, 64, 0.105, around(0.75, 0.117)), 0.167, 1.0986, [unlike]),
-    by_pair: [{ id: "photographs-1", target: share(23, 32, 0.15) }, { id: "photographs-2", target: share(25, 32, 0.14) }],
+    by_item: [{ id: "photographs-1", target: share(23, 32, 0.15) }, { id: "photographs-2", target: share(25, 32, 0.14) }],
     left: share(30, 64, 0.12),
     rt_ms: { n: 64, q1: 1900, median: 2754, q3: 4410 },
   },
@@ -57,7 +57,7 @@ const judged = [
     ...paper[2],
     p_holm: 0.000733728,
     analysis: analysis(-0.677, 0.001, 0.84, 0.0126, share(7, 33, 0.14), null, -1.312, []),
-    by_pair: [{ id: "animation-1", target: share(7, 33, 0.14) }],
+    by_item: [{ id: "animation-1", target: share(7, 33, 0.14) }],
     left: share(17, 33, 0.165),
     rt_ms: { n: 33, q1: 4100, median: 5980, q3: 8800 },
   },
@@ -108,7 +108,7 @@ export function results(path, sessions, stuff) {
   }
   if (rest === "report") {
     const about = { kelir_version: "0.1.0", methods: ["Participants saw 5 pairs of stimuli in 3 blocks and had to choose one of each pair.", "Effect sizes are Cohen's d and Hedges' g with 95% intervals from the noncentral t distribution."], chain: { rows: 161, head: "ab12".padEnd(64, "7"), broken: null } };
-    const answers = id === "empty" ? { blocks: empty.map((b) => ({ ...b, p_holm: null, analysis: { ...analysis(0, 1, 1, 1, null, null, 0, ["No answers."]), effect: null, bayes: null }, by_pair: [], left: null, rt_ms: null })), scale: null, scale_note: "No scale: no choices." } : { blocks: judged, scale, scale_note: null };
+    const answers = id === "empty" ? { blocks: empty.map((b) => ({ ...b, p_holm: null, analysis: { ...analysis(0, 1, 1, 1, null, null, 0, ["No answers."]), effect: null, bayes: null }, by_item: [], left: null, rt_ms: null })), scale: null, scale_note: "No scale: no choices." } : { blocks: judged, scale, scale_note: null };
     const excluded = id === "empty" ? [] : [{ session_id: "01936d2e-5b1a-7c3e-9a53-0d4b1f2a6c11", reasons: [{ reason: "too_fast", trials: 4, allowed: 1 }, { reason: "straight_lining", trials: 5 }] }];
     return [200, { study: id, title: study.title, ...about, ...answers, excluded, blocks_with_excluded: id === "empty" ? null : judged, stimuli: id === "empty" ? [] : stimuli }];
   }

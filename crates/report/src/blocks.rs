@@ -12,7 +12,7 @@ pub(crate) fn section(block: &BlockReport) -> Section {
     let [a, b] = &summary.conditions;
     let mut pieces = vec![Piece::Text(format!(
         "{a} against {b}, {} of {}; counted are choices of {}.",
-        count(summary.pairs as u64, "pair"),
+        count(summary.items as u64, "pair"),
         match summary.kind {
             kelir_study::Kind::Still => "still pictures",
             kelir_study::Kind::Animation => "animations",

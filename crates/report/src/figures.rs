@@ -39,8 +39,8 @@ pub(crate) fn choices(blocks: &[BlockReport]) -> Option<Piece> {
         let head = Estimate { label: summary.id.clone(), strong: true, ..Estimate::default() };
         rows.push(head);
         rows.push(row(format!("{} over {other}", summary.target), block.analysis.proportion.as_ref(), true));
-        if block.by_pair.len() > 1 {
-            rows.extend(block.by_pair.iter().map(|pair| row(pair.id.clone(), pair.target.as_ref(), false)));
+        if block.by_item.len() > 1 {
+            rows.extend(block.by_item.iter().map(|pair| row(pair.id.clone(), pair.target.as_ref(), false)));
         }
     }
     if rows.is_empty() {
@@ -181,7 +181,7 @@ pub(crate) struct Judged<'a> {
 pub(crate) fn judged(report: &StudyReport) -> Vec<Judged<'_>> {
     let mut found = Vec::new();
     for block in &report.report.blocks {
-        for pair in &block.by_pair {
+        for pair in &block.by_item {
             let Some(target) = &pair.target else { continue };
             for stimulus in report
                 .stimuli

@@ -28,7 +28,7 @@ pub(crate) fn section(report: &StudyReport) -> Section {
 fn asked(report: &StudyReport) -> Vec<String> {
     let comparisons = report.report.blocks.iter().map(|block| {
         let [a, b] = &block.summary.conditions;
-        format!("{}: {a} against {b}, {}.", block.summary.title, count(block.summary.pairs as u64, "pair"))
+        format!("{}: {a} against {b}, {}.", block.summary.title, count(block.summary.items as u64, "pair"))
     });
     std::iter::once(format!("“{}”", report.question)).chain(comparisons).collect()
 }
@@ -186,10 +186,10 @@ fn not_shown(report: &StudyReport) -> Vec<String> {
             }
         }
     }
-    let pairs: usize = report.report.blocks.iter().map(|b| b.summary.pairs).sum();
+    let items: usize = report.report.blocks.iter().map(|b| b.summary.items).sum();
     lines.push(format!(
         "Anything about other scenes: intervals and tests speak of other participants who see these {}.",
-        count(pairs as u64, "pair")
+        count(items as u64, "pair")
     ));
     lines
 }

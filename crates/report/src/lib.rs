@@ -103,7 +103,7 @@ pub struct OtherVersion {
 /// What one pair of a study shows under one condition.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Stimulus {
-    /// Pair's id.
+    /// Item's id.
     pub pair: String,
     /// Condition's name.
     pub condition: String,

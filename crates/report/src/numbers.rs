@@ -177,7 +177,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     for (choices, people) in &summary.counts {
         all.push(
             counted.whole(
-                format!("chose {target} {choices} of {} times (participants)", summary.pairs),
+                format!("chose {target} {choices} of {} times (participants)", summary.items),
                 *people,
             ),
         );
@@ -185,7 +185,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
 
     let t = rows("t-test");
     let mean = summary.mean.map(|x| {
-        t.number(format!("mean choices of {target} (of {})", count(summary.pairs as u64, "pair")), x, 4)
+        t.number(format!("mean choices of {target} (of {})", count(summary.items as u64, "pair")), x, 4)
     });
     all.extend(mean.map(|row| Number { n: Some(summary.n), ..row }));
     all.extend(summary.sd.map(|x| t.number("standard deviation (choices)", x, 4)));
@@ -241,7 +241,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
             "n: choices"
         };
         all.push(choices.share(format!("share of {target} (proportion)"), share).noted(by_participant));
-        if share.by_participant.is_some() && summary.pairs > 1 {
+        if share.by_participant.is_some() && summary.items > 1 {
             let row = choices
                 .number("the same, Wilson's interval (proportion)", share.proportion, 3)
                 .within(share.wilson);
@@ -249,7 +249,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         }
     }
     if let Some(binomial) = &analysis.binomial {
-        let note = if summary.pairs > 1 { "n: choices, wrongly taken as independent" } else { "n: choices" };
+        let note = if summary.items > 1 { "n: choices, wrongly taken as independent" } else { "n: choices" };
         let row = choices.whole(format!("exact binomial test: chose {target} (choices)"), binomial.successes);
         all.push(row.with_p(binomial.p).of_n(binomial.n, note));
     }
@@ -284,7 +284,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     }
     all.extend(analysis.detectable.map(|plan| power.number("effect found with 80% power (SD)", plan.d, 3)));
 
-    for pair in &block.by_pair {
+    for pair in &block.by_item {
         all.extend(
             pair.target.as_ref().map(|share| {
                 rows("pairs").share(format!("{}: share of {target} (proportion)", pair.id), share)

@@ -126,7 +126,7 @@ fn design(report: &StudyReport) -> Section {
             Cell::text(kind),
             Cell::text(format!("{a} / {b}")),
             Cell::text(&block.target),
-            Cell::whole(block.pairs.len() as u64),
+            Cell::whole(block.items.len() as u64),
         ])
     });
     let blocks = Table::new("", &["block", "shown as", "conditions", "counted", "pairs#"], rows.collect());

@@ -122,9 +122,9 @@ impl Library {
         }
         let (mut wrong, mut refused) = (Vec::new(), BTreeSet::new());
         for (i, block) in study.blocks.iter().enumerate() {
-            for (j, pair) in block.pairs.iter().enumerate() {
+            for (j, pair) in block.items.iter().enumerate() {
                 let Some(named) = &pair.scene else { continue };
-                let field = format!("blocks[{i}].pairs[{j}].scene");
+                let field = format!("blocks[{i}].{}[{j}].scene", block.items_key);
                 let path = beside(file, named);
                 let moves = match self.scene_facts(&path) {
                     Ok(facts) => facts.moves,

@@ -3,7 +3,7 @@
 use crate::library::{Library, beside};
 use crate::picture;
 use kelir_store::{Render, Store, StoreError, sha256_hex};
-use kelir_study::{Block, Condition, Pair, StudyDefinition};
+use kelir_study::{Block, Condition, Item, StudyDefinition};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub struct Task<'a> {
     /// The pair's block.
     pub block: &'a Block,
     /// The pair.
-    pub pair: &'a Pair,
+    pub pair: &'a Item,
     /// The condition's name.
     pub name: &'a str,
     /// The condition.
@@ -92,7 +92,7 @@ pub(crate) type StimulusMap = HashMap<(String, String), String>;
 pub(crate) fn tasks(study: &StudyDefinition) -> Vec<Task<'_>> {
     let mut tasks = Vec::new();
     for block in &study.blocks {
-        for pair in &block.pairs {
+        for pair in &block.items {
             for name in &block.conditions {
                 if let Some(condition) = study.conditions.get(name) {
                     tasks.push(Task { study, block, pair, name, condition });

@@ -174,7 +174,7 @@ pub async fn pairs_csv(store: &Store, study: &StudyDefinition) -> Result<String,
         for (block, pairs) in blocks(study).filter(|(block, _)| !block.catch) {
             let [a, b] = &block.conditions;
             for given in participant.answers_to(&pairs) {
-                let pair = &block.pairs[(given.pair - pairs.start) as usize];
+                let pair = &block.items[(given.item - pairs.start) as usize];
                 let chose = |target: bool| if target { block.target.as_str() } else { block.other() };
                 let selected = if chose(given.chose_target) == a { "1" } else { "0" };
                 let left = chose(given.chose_target == given.chose_left);

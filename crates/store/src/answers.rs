@@ -133,7 +133,7 @@ impl Source {
             if of_study {
                 answers.push(Row {
                     session_id,
-                    pair_id: text(row, 1)?,
+                    item_id: text(row, 1)?,
                     left_condition: text(row, 2)?,
                     chose_left: row.get(3)?,
                     rt_ms: row.get(4)?,

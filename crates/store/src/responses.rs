@@ -162,7 +162,7 @@ impl Head {
             subject_id: session.subject_id.clone(),
             trial_index: new.trial_index,
             block_id: trial.block_id.clone(),
-            pair_id: trial.pair_id.clone(),
+            pair_id: trial.item_id.clone(),
             left_sha256: planned.left_sha256.clone(),
             right_sha256: planned.right_sha256.clone(),
             left_condition: trial.left.clone(),

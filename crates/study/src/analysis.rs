@@ -24,7 +24,7 @@ pub struct BlockSummary {
     /// The condition whose choices are counted.
     pub target: String,
     /// Number of pairs.
-    pub pairs: usize,
+    pub items: usize,
     /// Participants who answered all pairs.
     pub n: u64,
     /// Participants who answered some but not all, left out.
@@ -63,7 +63,7 @@ pub fn summarise(study: &StudyDefinition, participants: &[&Participant]) -> Vec<
                 kind: block.kind,
                 conditions: block.conditions.clone(),
                 target: block.target.clone(),
-                pairs: block.pairs.len(),
+                items: block.items.len(),
                 n: test.n,
                 incomplete: tally.incomplete,
                 counts,

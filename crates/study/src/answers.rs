@@ -12,8 +12,8 @@ use std::sync::Arc;
 pub struct Row<'a> {
     /// Whose answer; any text that tells participants apart.
     pub session_id: &'a str,
-    /// Pair's id.
-    pub pair_id: &'a str,
+    /// Item's id.
+    pub item_id: &'a str,
     /// Condition on the left.
     pub left_condition: &'a str,
     /// Whether the left picture was chosen.
@@ -25,8 +25,8 @@ pub struct Row<'a> {
 /// One answer of a participant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
-    /// Place of the pair in the study: pairs are numbered through all blocks in file order.
-    pub pair: u32,
+    /// Place of the item in the study: items are numbered through all blocks in file order.
+    pub item: u32,
     /// Whether the block's target was chosen.
     pub chose_target: bool,
     /// Whether the left picture was chosen.
@@ -51,9 +51,9 @@ impl Participant {
     }
 
     /// The answers to the pairs of one block.
-    pub fn answers_to(&self, pairs: &Range<u32>) -> &[Given] {
-        let before = |end: u32| self.answers.partition_point(|given| given.pair < end);
-        &self.answers[before(pairs.start)..before(pairs.end)]
+    pub fn answers_to(&self, items: &Range<u32>) -> &[Given] {
+        let before = |end: u32| self.answers.partition_point(|given| given.item < end);
+        &self.answers[before(items.start)..before(items.end)]
     }
 }
 
@@ -68,8 +68,8 @@ pub struct Answers {
 /// Where a study's pairs lie.
 #[derive(Debug)]
 struct Places {
-    /// Pair's id → its place.
-    pairs: HashMap<String, u32>,
+    /// Item's id → its place.
+    items: HashMap<String, u32>,
     /// The target and the other condition of each place.
     conditions: Vec<[String; 2]>,
 }
@@ -77,13 +77,13 @@ struct Places {
 impl Answers {
     /// No answers yet to this study.
     pub fn new(study: &StudyDefinition) -> Answers {
-        let pairs = study.blocks.iter().flat_map(|block| block.pairs.iter().map(move |pair| (block, pair)));
+        let items = study.blocks.iter().flat_map(|block| block.items.iter().map(move |pair| (block, pair)));
         let (mut ids, mut conditions) = (HashMap::new(), Vec::new());
-        for (place, (block, pair)) in (0..).zip(pairs) {
+        for (place, (block, pair)) in (0..).zip(items) {
             ids.insert(pair.id.clone(), place);
             conditions.push([block.target.clone(), block.other().to_owned()]);
         }
-        let places = Arc::new(Places { pairs: ids, conditions });
+        let places = Arc::new(Places { items: ids, conditions });
         Answers { places, participants: Vec::new(), known: HashMap::new() }
     }
 
@@ -95,14 +95,14 @@ impl Answers {
     /// Adds an answer. What names a pair or condition that the study does not have is left out; of several answers of one
     /// participant to one pair the first counts.
     pub fn push(&mut self, row: Row<'_>) {
-        let Some(&pair) = self.places.pairs.get(row.pair_id) else { return };
-        let [target, other] = &self.places.conditions[pair as usize];
+        let Some(&item) = self.places.items.get(row.item_id) else { return };
+        let [target, other] = &self.places.conditions[item as usize];
         let target_left = row.left_condition == target;
         if !target_left && row.left_condition != other {
             return;
         }
         let chose_target = target_left == row.chose_left;
-        let given = Given { pair, chose_target, chose_left: row.chose_left, rt_ms: row.rt_ms };
+        let given = Given { item, chose_target, chose_left: row.chose_left, rt_ms: row.rt_ms };
         let index = self.participant(row.session_id);
         insert(&mut self.participants[index].answers, given);
     }
@@ -150,7 +150,7 @@ impl Answers {
 }
 
 fn insert(answers: &mut Vec<Given>, given: Given) {
-    if let Err(at) = answers.binary_search_by_key(&given.pair, |known| known.pair) {
+    if let Err(at) = answers.binary_search_by_key(&given.item, |known| known.item) {
         answers.insert(at, given);
     }
 }
@@ -159,7 +159,7 @@ fn insert(answers: &mut Vec<Given>, given: Given) {
 pub fn blocks(study: &StudyDefinition) -> impl Iterator<Item = (&Block, Range<u32>)> {
     study.blocks.iter().scan(0, |next, block| {
         let first = *next;
-        *next += block.pairs.len() as u32;
+        *next += block.items.len() as u32;
         Some((block, first..*next))
     })
 }
@@ -180,9 +180,9 @@ pub struct Tally {
 /// A tally of every block in study order, catch blocks too, in one walk over the answers.
 pub fn tallies(study: &StudyDefinition, participants: &[&Participant]) -> Vec<Tally> {
     let ends: Vec<(u32, u64)> =
-        blocks(study).map(|(block, pairs)| (pairs.end, block.pairs.len() as u64)).collect();
-    let empty = |&(_, pairs): &(u32, u64)| Tally {
-        complete: vec![0; pairs as usize + 1],
+        blocks(study).map(|(block, items)| (items.end, block.items.len() as u64)).collect();
+    let empty = |&(_, items): &(u32, u64)| Tally {
+        complete: vec![0; items as usize + 1],
         incomplete: 0,
         hits: 0,
         trials: 0,
@@ -190,15 +190,15 @@ pub fn tallies(study: &StudyDefinition, participants: &[&Participant]) -> Vec<Ta
     let mut tallies: Vec<Tally> = ends.iter().map(empty).collect();
     for participant in participants {
         let mut answers = participant.answers.iter().peekable();
-        for (tally, &(end, pairs)) in tallies.iter_mut().zip(&ends) {
+        for (tally, &(end, items)) in tallies.iter_mut().zip(&ends) {
             let (mut hits, mut trials) = (0, 0);
-            while let Some(given) = answers.next_if(|given| given.pair < end) {
+            while let Some(given) = answers.next_if(|given| given.item < end) {
                 trials += 1;
                 hits += u64::from(given.chose_target);
             }
             tally.hits += hits;
             tally.trials += trials;
-            if trials == pairs {
+            if trials == items {
                 tally.complete[hits as usize] += 1;
             } else {
                 tally.incomplete += u64::from(trials > 0);
@@ -225,14 +225,14 @@ pub fn observers(study: &StudyDefinition, participants: &[&Participant]) -> (Vec
     let index = |name: &str| names.iter().position(|known| known == name);
     let sides: Vec<(Range<u32>, usize, usize)> = compared
         .into_iter()
-        .filter_map(|(block, pairs)| Some((pairs, index(&block.target)?, index(block.other())?)))
+        .filter_map(|(block, items)| Some((items, index(&block.target)?, index(block.other())?)))
         .collect();
     let observers = participants
         .iter()
         .map(|participant| {
             let mut choices = BTreeMap::<(usize, usize), u64>::new();
-            for (pairs, target, other) in &sides {
-                let given = participant.answers_to(pairs);
+            for (items, target, other) in &sides {
+                let given = participant.answers_to(items);
                 let hits = given.iter().filter(|given| given.chose_target).count();
                 for (pair, times) in [((*target, *other), hits), ((*other, *target), given.len() - hits)] {
                     if times > 0 {

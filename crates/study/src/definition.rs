@@ -79,7 +79,7 @@ pub enum Condition {
     },
     /// Picture files, such as real photographs.
     Files {
-        /// Pair id → path relative to the study file.
+        /// Item id → path relative to the study file.
         files: BTreeMap<String, String>,
     },
 }
@@ -97,8 +97,12 @@ pub struct Block {
     pub conditions: [String; 2],
     /// The condition whose choices are counted, one of `conditions`.
     pub target: String,
-    /// The pairs, in file order.
-    pub pairs: Vec<Pair>,
+    /// The items, in file order: each is a scene shown under both conditions.
+    #[serde(alias = "pairs")]
+    pub items: Vec<Item>,
+    /// What the file calls them, for messages: `items`, or `pairs` in files that are older.
+    #[serde(skip, default = "items_key")]
+    pub items_key: &'static str,
     /// Whether the target is the right answer that attention alone is needed for; such a block screens and is not analysed.
     #[serde(default, skip_serializing_if = "is_default")]
     pub catch: bool,
@@ -160,7 +164,7 @@ pub enum Kind {
 
 /// One scene shown under both conditions of its block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Pair {
+pub struct Item {
     /// Identifier, unique in the study.
     pub id: String,
     /// Scene file relative to the study file; absent only where both conditions are picture files.
@@ -185,6 +189,10 @@ pub struct Screening {
     pub incomplete: bool,
 }
 
+fn items_key() -> &'static str {
+    "items"
+}
+
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
@@ -202,7 +210,7 @@ impl StudyDefinition {
 
     /// Number of trials a participant sees.
     pub fn trial_count(&self) -> usize {
-        self.blocks.iter().map(|block| block.pairs.len()).sum()
+        self.blocks.iter().map(|block| block.items.len()).sum()
     }
 
     /// The block with this id.
@@ -214,7 +222,7 @@ impl StudyDefinition {
 impl Block {
     /// Expected number of target choices of someone who cannot tell: half the pairs.
     pub fn mu(&self) -> f64 {
-        self.pairs.len() as f64 / 2.0
+        self.items.len() as f64 / 2.0
     }
 
     /// The condition that is not the target.

@@ -16,7 +16,7 @@ pub mod report;
 pub mod screening;
 
 pub use definition::{
-    Block, Completion, Condition, Direction, GUESS, Kind, Pair, Psychometric, Screening, StudyDefinition,
+    Block, Completion, Condition, Direction, GUESS, Item, Kind, Psychometric, Screening, StudyDefinition,
     Texts,
 };
 pub use plan::{Trial, TrialPlan};

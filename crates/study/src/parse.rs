@@ -2,7 +2,7 @@
 
 mod psychometric;
 
-use crate::definition::{Block, Completion, Condition, Kind, Pair, Screening, StudyDefinition, Texts};
+use crate::definition::{Block, Completion, Condition, Item, Kind, Screening, StudyDefinition, Texts};
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
 use crate::problems::{Problem, StudyErrors};
 use serde_json::Value as Json;
@@ -197,8 +197,9 @@ fn read_blocks(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Vec<Block> {
             conditions.as_ref().is_none_or(|c| c.iter().any(|name| name == target)).then(|| target.to_owned())
         });
         let catch = fields.get("catch", "true or false", Value::as_bool).unwrap_or(false);
-        let mut pairs = Vec::new();
-        for mut fields in fields.tables("pairs") {
+        let mut items = Vec::new();
+        let key = items_key(&fields);
+        for mut fields in fields.tables(key) {
             let id = read_id(&mut fields, &mut pair_ids);
             let scene =
                 fields.get("scene", "a scene file relative to the study file, ending in .toml", |v| {
@@ -206,21 +207,36 @@ fn read_blocks(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Vec<Block> {
                 });
             let level = fields.get("level", "a finite number within ±1e12", |v| number(v, -1e12, 1e12));
             fields.finish();
-            pairs.extend(id.map(|id| Pair { id, scene, level }));
+            items.extend(id.map(|id| Item { id, scene, level }));
         }
-        let psychometric = psychometric::read(gatherer, &mut fields, &pairs, catch);
+        let psychometric = psychometric::read(gatherer, &mut fields, key, &items, catch);
         fields.finish();
         if let (Some(id), Some(title), Some(kind), Some(conditions), Some(target)) =
             (id, title, kind, conditions, target)
         {
-            blocks.push(Block { id, title, kind, conditions, target, pairs, catch, psychometric });
+            blocks.push(Block {
+                id,
+                title,
+                kind,
+                conditions,
+                target,
+                items,
+                items_key: key,
+                catch,
+                psychometric,
+            });
         }
     }
-    let trials: usize = blocks.iter().map(|b| b.pairs.len()).sum();
+    let trials: usize = blocks.iter().map(|b| b.items.len()).sum();
     if trials > 10_000 {
         gatherer.report("blocks", None, format!("have {trials} pairs; a study has at most 10000"));
     }
     blocks
+}
+
+/// The key that the block's items stand under: `items`, or `pairs` as it used to be called.
+fn items_key(block: &Fields<'_>) -> &'static str {
+    if block.has("pairs") && !block.has("items") { "pairs" } else { "items" }
 }
 
 fn read_id(fields: &mut Fields<'_>, taken: &mut BTreeSet<String>) -> Option<String> {
@@ -271,9 +287,9 @@ fn read_conditions(
                 );
             }
             if let Some(Condition::Rendered { .. }) = conditions.get(name) {
-                for (k, _) in block.pairs.iter().enumerate().filter(|(_, pair)| pair.scene.is_none()) {
+                for (k, _) in block.items.iter().enumerate().filter(|(_, pair)| pair.scene.is_none()) {
                     let rule = format!("missing; condition {name} is drawn from it");
-                    gatherer.report(&format!("blocks[{i}].pairs[{k}].scene"), None, rule);
+                    gatherer.report(&format!("blocks[{i}].{}[{k}].scene", block.items_key), None, rule);
                 }
             }
         }
@@ -369,7 +385,7 @@ fn read_files(
     let mut files = BTreeMap::new();
     for (pair, value) in table {
         let field = format!("{path}.{pair}");
-        if !users().any(|b| b.pairs.iter().any(|p| p.id == *pair)) {
+        if !users().any(|b| b.items.iter().any(|p| p.id == *pair)) {
             gatherer.report(&field, Some(value), "no block with this condition has a pair of this id");
         }
         let picture =
@@ -385,7 +401,7 @@ fn read_files(
             ),
         }
     }
-    for pair in users().flat_map(|b| &b.pairs).filter(|p| !table.contains_key(&p.id)) {
+    for pair in users().flat_map(|b| &b.items).filter(|p| !table.contains_key(&p.id)) {
         gatherer.report(&format!("{path}.{}", pair.id), None, "missing; every pair needs its picture");
     }
     Some(files)

@@ -31,10 +31,11 @@ pub struct Trial {
     pub block_id: String,
     /// 0-based place of the block in the study.
     pub block_index: u32,
-    /// Pair's id.
-    pub pair_id: String,
-    /// 0-based place of the pair in its block's file order.
-    pub pair_index: u32,
+    /// Item's id.
+    pub item_id: String,
+    /// 0-based place of the item in its block's file order.
+    #[serde(alias = "pair_index")]
+    pub item_index: u32,
     /// Stills or animations.
     pub kind: Kind,
     /// Condition on the left.
@@ -59,7 +60,7 @@ impl TrialPlan {
         let mut extra_left = below(&mut sides, 2) == 0;
         let mut trials = Vec::with_capacity(study.trial_count());
         for (block_index, block) in study.blocks.iter().enumerate() {
-            let n = block.pairs.len();
+            let n = block.items.len();
             let mut target_left: Vec<bool> = (0..n / 2).flat_map(|_| [true, false]).collect();
             if n % 2 == 1 {
                 // The odd ones out of odd blocks alternate over the session.
@@ -67,18 +68,18 @@ impl TrialPlan {
                 extra_left = !extra_left;
             }
             shuffle(&mut sides, &mut target_left);
-            let mut pairs: Vec<usize> = (0..n).collect();
-            shuffle(&mut order, &mut pairs);
-            for pair_index in pairs {
-                let target_left = target_left[pair_index] != mirrored;
+            let mut items: Vec<usize> = (0..n).collect();
+            shuffle(&mut order, &mut items);
+            for item_index in items {
+                let target_left = target_left[item_index] != mirrored;
                 let (target, other) = (block.target.clone(), block.other().to_owned());
                 let (left, right) = if target_left { (target, other) } else { (other, target) };
                 trials.push(Trial {
                     trial_index: trials.len() as u32,
                     block_id: block.id.clone(),
                     block_index: block_index as u32,
-                    pair_id: block.pairs[pair_index].id.clone(),
-                    pair_index: pair_index as u32,
+                    item_id: block.items[item_index].id.clone(),
+                    item_index: item_index as u32,
                     kind: block.kind,
                     left,
                     right,

@@ -7,7 +7,7 @@ use std::fmt;
 pub struct Problem {
     /// The file as the caller named it.
     pub file: String,
-    /// Path of the field, such as `blocks[1].pairs[0].scene`; `line 3, column 5` where the text is no TOML.
+    /// Path of the field, such as `blocks[1].items[0].scene`; `line 3, column 5` where the text is no TOML.
     pub field: String,
     /// The offending value as TOML, absent where the field is missing.
     pub value: Option<String>,

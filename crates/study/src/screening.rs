@@ -54,7 +54,7 @@ pub fn screen(study: &StudyDefinition, participant: &Participant) -> Vec<Exclusi
     }
     if let Some(allowed) = rules.max_failed_catch_trials {
         let catch = blocks(study).filter(|(block, _)| block.catch);
-        let failed = |(_, pairs)| participant.answers_to(&pairs).iter().filter(|a| !a.chose_target).count();
+        let failed = |(_, items)| participant.answers_to(&items).iter().filter(|a| !a.chose_target).count();
         let trials = catch.map(failed).sum::<usize>() as u32;
         if trials > allowed {
             reasons.push(Exclusion::FailedCatchTrials { trials, allowed });
@@ -82,12 +82,12 @@ mod tests {
 
     fn study(screening: &str) -> StudyDefinition {
         let block = |id: &str, catch: &str| {
-            let pairs: Vec<String> =
+            let items: Vec<String> =
                 (0..3).map(|i| format!("{{ id = \"{id}{i}\", scene = \"a.toml\" }}")).collect();
             format!(
                 "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\n\
-                 pairs = [{}]\n{catch}\n",
-                pairs.join(", ")
+                 items = [{}]\n{catch}\n",
+                items.join(", ")
             )
         };
         let text = format!(
@@ -105,11 +105,11 @@ mod tests {
     fn seen(study: &StudyDefinition, sides: &[bool], rt_ms: [f64; 6], catch: [&str; 3]) -> Participant {
         let mut answers = Answers::new(study);
         for (i, &chose_left) in sides.iter().enumerate() {
-            let pair_id = &format!("{}{}", if i < 3 { "main" } else { "easy" }, i % 3);
+            let item_id = &format!("{}{}", if i < 3 { "main" } else { "easy" }, i % 3);
             let chosen = if i < 3 { "mc" } else { catch[i - 3] };
             let other = if chosen == "mc" { "pa" } else { "mc" };
             let left_condition = if chose_left { chosen } else { other };
-            answers.push(Row { session_id: "s", pair_id, left_condition, chose_left, rt_ms: rt_ms[i] });
+            answers.push(Row { session_id: "s", item_id, left_condition, chose_left, rt_ms: rt_ms[i] });
         }
         answers.participants()[0].clone()
     }

@@ -25,7 +25,7 @@ pub fn run(command: Command) -> Result<()> {
     for file in files {
         match kelir_server::check_study(&file) {
             Ok(study) => {
-                let trials: usize = study.blocks.iter().map(|block| block.pairs.len()).sum();
+                let trials: usize = study.blocks.iter().map(|block| block.items.len()).sum();
                 print(&format!("{}: good ({} blocks, {trials} trials)", file.display(), study.blocks.len()))?;
             }
             Err(errors) => problems.push(errors.to_string()),

@@ -89,14 +89,14 @@ pub fn paper(counts: [[usize; 3]; 3]) -> Study {
 
 /// psignifit's golden numbers: 96, 95, 84, 72, 58, 50 of 100 at log10 triangles 2.48 … 3.8.
 pub fn levels() -> Study {
-    let pairs: Vec<String> = LEVELS
+    let items: Vec<String> = LEVELS
         .iter()
         .map(|(id, level, _)| format!("{{ id = \"{id}\", scene = \"a.toml\", level = {level} }}"))
         .collect();
     let blocks = format!(
         "[[blocks]]\nid = \"levels\"\ntitle = TITLE\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\npairs = [{}]\n\
          [blocks.psychometric]\nfunction = \"gaussian\"\ndirection = \"falling\"\nlabel = \"triangles\"\nunit = \"log10\"\n",
-        pairs.join(", ")
+        items.join(", ")
     );
     let person = |i: usize| {
         LEVELS.iter().map(|(id, _, hits)| (*id, if i < *hits { "pa" } else { "mc" }, 800.0)).collect()
@@ -152,13 +152,13 @@ impl Study {
 fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyReport {
     let mut answers = Answers::new(&design);
     for (i, own) in people.iter().enumerate() {
-        for (k, (pair_id, chosen, rt_ms)) in own.iter().enumerate() {
-            let block = design.blocks.iter().find(|b| b.pairs.iter().any(|p| p.id == *pair_id)).unwrap();
+        for (k, (item_id, chosen, rt_ms)) in own.iter().enumerate() {
+            let block = design.blocks.iter().find(|b| b.items.iter().any(|p| p.id == *item_id)).unwrap();
             let chose_left = k % 2 == 0;
             let rest = block.conditions.iter().find(|c| *c != chosen).unwrap();
             let left_condition = if chose_left { chosen } else { rest.as_str() };
             let session_id = &format!("person-{i:03}");
-            answers.push(Row { session_id, pair_id, left_condition, chose_left, rt_ms: *rt_ms });
+            answers.push(Row { session_id, item_id, left_condition, chose_left, rt_ms: *rt_ms });
         }
     }
     let everybody = answers.participants();

@@ -52,8 +52,8 @@ pub(crate) async fn post_session(
     let plan = |slot| {
         let plan = TrialPlan::for_slot(&loaded.study, slot);
         let filled = |trial: kelir_study::Trial| PlannedTrial {
-            left_sha256: hash(&trial.pair_id, &trial.left),
-            right_sha256: hash(&trial.pair_id, &trial.right),
+            left_sha256: hash(&trial.item_id, &trial.left),
+            right_sha256: hash(&trial.item_id, &trial.right),
             trial,
         };
         PlannedSession { seed: plan.seed, trials: plan.trials.into_iter().map(filled).collect() }
@@ -163,7 +163,7 @@ async fn state_of(app: &App, session: &Session) -> Result<Value, ApiError> {
                 "trial_index": trial.trial_index,
                 "block_id": trial.block_id,
                 "block_index": trial.block_index,
-                "pair_index": trial.pair_index,
+                "pair_index": trial.item_index,
                 "kind": trial.kind,
                 "left": stimulus(&planned.left_sha256),
                 "right": stimulus(&planned.right_sha256),

@@ -185,7 +185,7 @@ fn the_built_in_study_is_good() {
     let library = Library::new(std::path::Path::new("/nonexistent"));
     assert!(library.study_files().contains(&"studies/shadow-puppets.toml".to_owned()));
     let study = library.study("studies/shadow-puppets.toml").unwrap_or_else(|errors| panic!("{errors}"));
-    let pairs: Vec<usize> = study.blocks.iter().map(|b| b.pairs.len()).collect();
+    let pairs: Vec<usize> = study.blocks.iter().map(|b| b.items.len()).collect();
     assert_eq!(pairs, [2, 2, 1]);
     assert_eq!(study.question, "Which image is more likely to be real?");
     assert!(study.blocks.iter().all(|b| b.target == "pa"));

@@ -65,7 +65,7 @@ async fn a_cursor_on_several_threads_reads_what_the_rows_say() {
         for (row, _) in &rows {
             expected.push(Row {
                 session_id: &row.session_id,
-                pair_id: &row.pair_id,
+                item_id: &row.pair_id,
                 left_condition: &row.left_condition,
                 chose_left: row.choice == "left",
                 rt_ms: row.rt_ms,

@@ -235,7 +235,7 @@ async fn reading_on_adds_what_has_come_since_and_nothing_twice() {
     let [participant] = answers.participants()[..] else { panic!("one took part") };
     assert_eq!(*participant.session_id, *session.session_id);
     for given in participant.answers() {
-        let planned = session.trials.iter().find(|t| t.trial.pair_index == given.pair).unwrap();
+        let planned = session.trials.iter().find(|t| t.trial.item_index == given.item).unwrap();
         let chose_left = planned.trial.trial_index == 0;
         assert_eq!((given.chose_left, given.rt_ms), (chose_left, 7.5));
         assert_eq!(given.chose_target, planned.trial.target_left == chose_left);

@@ -11,13 +11,13 @@ use std::collections::{BTreeSet, HashSet};
 
 /// Three blocks of 2, 3 and 1 pairs over three conditions, and a catch block of 2; with rules of screening.
 fn study() -> StudyDefinition {
-    let block = |id: &str, conditions: &str, target: &str, pairs: usize, catch: bool| {
-        let pairs: Vec<String> =
-            (0..pairs).map(|i| format!("{{ id = \"{id}{i}\", scene = \"a.toml\" }}")).collect();
-        let pairs = pairs.join(", ");
+    let block = |id: &str, conditions: &str, target: &str, items: usize, catch: bool| {
+        let items: Vec<String> =
+            (0..items).map(|i| format!("{{ id = \"{id}{i}\", scene = \"a.toml\" }}")).collect();
+        let items = items.join(", ");
         format!(
             "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [{conditions}]\n\
-             target = \"{target}\"\ncatch = {catch}\npairs = [{pairs}]\n"
+             target = \"{target}\"\ncatch = {catch}\npairs = [{items}]\n"
         )
     };
     let text = format!(
@@ -55,7 +55,7 @@ impl Told {
     fn row(&self) -> Row<'_> {
         Row {
             session_id: &self.session,
-            pair_id: &self.pair,
+            item_id: &self.pair,
             left_condition: &self.left,
             chose_left: self.chose_left,
             rt_ms: self.rt_ms,
@@ -64,14 +64,14 @@ impl Told {
 }
 
 fn told(study: &StudyDefinition, drawn: &[Drawn]) -> Vec<Told> {
-    let pairs: Vec<(&Block, &str)> =
-        study.blocks.iter().flat_map(|b| b.pairs.iter().map(move |p| (b, p.id.as_str()))).collect();
+    let items: Vec<(&Block, &str)> =
+        study.blocks.iter().flat_map(|b| b.items.iter().map(move |p| (b, p.id.as_str()))).collect();
     drawn
         .iter()
         .map(|&(session, pair, target_left, chose_left, rt)| {
             let session = format!("s{session:03}");
             let rt_ms = f64::from(rt);
-            let Some((block, pair)) = pairs.get(usize::from(pair)) else {
+            let Some((block, pair)) = items.get(usize::from(pair)) else {
                 let (block, pair) = ("ab".to_owned(), format!("ghost{pair}"));
                 return Told { session, block, pair, left: "a".into(), right: "b".into(), chose_left, rt_ms };
             };
@@ -112,12 +112,12 @@ fn excluded(study: &StudyDefinition, rows: &[&Told]) -> BTreeSet<String> {
 
 /// (n, incomplete, counts) of a block.
 fn tally(rows: &[&Told], block: &Block) -> (u64, u64, BTreeMap<u32, u64>) {
-    let mut counts: BTreeMap<u32, u64> = (0..=block.pairs.len() as u32).map(|k| (k, 0)).collect();
+    let mut counts: BTreeMap<u32, u64> = (0..=block.items.len() as u32).map(|k| (k, 0)).collect();
     let (mut n, mut incomplete) = (0, 0);
     let sessions: BTreeSet<&str> = rows.iter().map(|r| r.session.as_str()).collect();
     for session in sessions {
         let own: Vec<_> = rows.iter().filter(|r| r.session == session && r.block == block.id).collect();
-        if own.len() == block.pairs.len() {
+        if own.len() == block.items.len() {
             n += 1;
             let hits = own.iter().filter(|r| r.chosen() == block.target).count();
             *counts.get_mut(&(hits as u32)).unwrap() += 1;
@@ -213,13 +213,13 @@ fn a_report_counts_sides_times_and_pairs_as_the_rows_do_and_notices_one_changed_
         report.blocks.iter().all(|block| {
             let of_block: Vec<&Told> = expected.iter().filter(|r| r.block == block.summary.id).collect();
             let lefts = of_block.iter().filter(|r| r.chose_left).count() as u64;
-            let pairs = block.by_pair.iter().all(|pair| {
+            let items = block.by_item.iter().all(|pair| {
                 let own: Vec<_> = of_block.iter().filter(|r| r.pair == pair.id).collect();
                 let hits = own.iter().filter(|r| r.chosen() == block.summary.target).count() as u64;
                 pair.target.as_ref().is_some_and(|t| (t.chosen, t.trials) == (hits, own.len() as u64))
             });
             let left = block.left.as_ref().unwrap();
-            pairs
+            items
                 && (left.chosen, left.trials) == (lefts, of_block.len() as u64)
                 && block.rt_ms.unwrap().n == left.trials
         })
@@ -235,9 +235,9 @@ fn a_report_counts_sides_times_and_pairs_as_the_rows_do_and_notices_one_changed_
 fn what_the_study_does_not_know_is_left_out() {
     let study = study();
     let mut answers = Answers::new(&study);
-    let row = |pair_id, left_condition| Row {
+    let row = |item_id, left_condition| Row {
         session_id: "s",
-        pair_id,
+        item_id,
         left_condition,
         chose_left: true,
         rt_ms: 1.0,
@@ -247,7 +247,7 @@ fn what_the_study_does_not_know_is_left_out() {
     assert!(answers.is_empty() && answers.participants().is_empty());
     answers.push(row("ab0", "b"));
     let [given] = answers.participants()[0].answers()[..] else { panic!("one answer") };
-    assert_eq!((given.pair, given.chose_target, given.chose_left), (0, true, true));
+    assert_eq!((given.item, given.chose_target, given.chose_left), (0, true, true));
     assert_eq!(
         screen(&study, answers.participants()[0])[0],
         Exclusion::Incomplete { answered: 1, trials: 8 }

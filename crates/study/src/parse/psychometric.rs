@@ -1,6 +1,6 @@
 //! `[blocks.psychometric]` and the levels of the block's pairs.
 
-use crate::definition::{Direction, GUESS, Pair, Psychometric};
+use crate::definition::{Direction, GUESS, Item, Psychometric};
 use crate::fields::{Fields, Gatherer, number, text};
 use kelir_stats::psychometric::{Lapse, Sigmoid};
 use toml::Value;
@@ -9,14 +9,15 @@ use toml::Value;
 pub(super) fn read(
     gatherer: &Gatherer<'_>,
     block: &mut Fields<'_>,
-    pairs: &[Pair],
+    key: &str,
+    items: &[Item],
     catch: bool,
 ) -> Option<Psychometric> {
     let Some(value) = block.raw("psychometric") else {
-        for (i, pair) in pairs.iter().enumerate().filter(|(_, pair)| pair.level.is_some()) {
+        for (i, pair) in items.iter().enumerate().filter(|(_, pair)| pair.level.is_some()) {
             let level = pair.level.map(Value::Float);
             block.report(
-                &format!("pairs[{i}].level"),
+                &format!("{key}[{i}].level"),
                 level.as_ref(),
                 "needs the block's [blocks.psychometric]",
             );
@@ -56,15 +57,15 @@ pub(super) fn read(
     if catch {
         block.report("psychometric", None, "a catch block is not analysed; leave one of the two out");
     }
-    for (i, _) in pairs.iter().enumerate().filter(|(_, pair)| pair.level.is_none()) {
+    for (i, _) in items.iter().enumerate().filter(|(_, pair)| pair.level.is_none()) {
         let rule = "missing; each pair of a block with a psychometric function has a level";
-        block.report(&format!("pairs[{i}].level"), None, rule);
+        block.report(&format!("{key}[{i}].level"), None, rule);
     }
-    let mut levels: Vec<f64> = pairs.iter().filter_map(|pair| pair.level).collect();
+    let mut levels: Vec<f64> = items.iter().filter_map(|pair| pair.level).collect();
     levels.sort_by(f64::total_cmp);
     levels.dedup();
-    if pairs.iter().all(|pair| pair.level.is_some()) && levels.len() < 3 {
-        block.report("pairs", None, "must have at least three different levels to show a curve");
+    if items.iter().all(|pair| pair.level.is_some()) && levels.len() < 3 {
+        block.report(key, None, "must have at least three different levels to show a curve");
     }
     Some(Psychometric { function: function?, direction: direction?, label: label?, unit, lapse, thresholds })
 }

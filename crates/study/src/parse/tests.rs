@@ -92,7 +92,7 @@ fn every_problem_is_reported_with_field_value_and_rule() {
         "studies/two.toml: size = [900, 333]: must be [width, height] in pixels",
         "studies/two.toml: surrond = 0.2: unknown key",
         "studies/two.toml: conditions.mc.spp = nan: must be a finite number",
-        "studies/two.toml: blocks[0].pairs[1].id = \"a\": must be unique",
+        "studies/two.toml: blocks[0].items[1].id = \"a\": must be unique",
         "studies/two.toml: blocks[0].target = \"photo\": must be one of",
     ] {
         assert!(found.iter().any(|p| p.starts_with(expected)), "no {expected:?} in {found:#?}");
@@ -122,9 +122,9 @@ fn each_rule_refuses_its_breach() {
         ("[\"pa\", \"mc\"]", "[\"pa\", \"ghost\"]", "blocks[0].conditions[1]"),
         ("id = \"stills\"", "id = \"Stills!\"", "blocks[0].id"),
         ("kind = \"still\"", "kind = \"film\"", "blocks[0].kind"),
-        ("../scenes/b.toml", "/scenes/b.toml", "blocks[0].pairs[1].scene"),
-        ("{ id = \"b\", scene = \"../scenes/b.toml\" }", "{ id = \"b\" }", "blocks[0].pairs[1].scene"),
-        ("{ id = \"b\", scene = \"../scenes/b.toml\" }", "7", "blocks[0].pairs[1]"),
+        ("../scenes/b.toml", "/scenes/b.toml", "blocks[0].items[1].scene"),
+        ("{ id = \"b\", scene = \"../scenes/b.toml\" }", "{ id = \"b\" }", "blocks[0].items[1].scene"),
+        ("{ id = \"b\", scene = \"../scenes/b.toml\" }", "7", "blocks[0].items[1]"),
         ("title = \"Two blocks\"", "title = ", "line 2"),
     ];
     assert_eq!(problems(GOOD), Vec::<String>::new());
@@ -167,7 +167,7 @@ fn with_levels() -> String {
 fn levels_and_their_function_are_read_and_count_towards_the_hash() {
     let study = StudyDefinition::parse("two.toml", &with_levels()).unwrap();
     let block = &study.blocks[0];
-    assert_eq!(block.pairs.iter().map(|p| p.level).collect::<Vec<_>>(), [Some(1.0), Some(2.5), Some(4.0)]);
+    assert_eq!(block.items.iter().map(|p| p.level).collect::<Vec<_>>(), [Some(1.0), Some(2.5), Some(4.0)]);
     let function = block.psychometric.as_ref().unwrap();
     assert_eq!((function.function, function.direction), (Sigmoid::Weibull, Direction::Falling));
     assert_eq!((function.label.as_str(), function.unit.as_deref()), ("triangles", Some("log10")));
@@ -184,10 +184,10 @@ fn levels_and_their_function_are_read_and_count_towards_the_hash() {
 #[test]
 fn each_rule_of_levels_refuses_its_breach() {
     let cases = [
-        ("level = 2.5", "level = nan", "blocks[0].pairs[1].level"),
-        ("level = 2.5", "level = \"much\"", "blocks[0].pairs[1].level"),
-        (", level = 2.5", "", "blocks[0].pairs[1].level: missing"),
-        ("level = 2.5", "level = 1.0", "blocks[0].pairs: must have at least three different levels"),
+        ("level = 2.5", "level = nan", "blocks[0].items[1].level"),
+        ("level = 2.5", "level = \"much\"", "blocks[0].items[1].level"),
+        (", level = 2.5", "", "blocks[0].items[1].level: missing"),
+        ("level = 2.5", "level = 1.0", "blocks[0].items: must have at least three different levels"),
         ("function = \"weibull\"", "function = \"line\"", "blocks[0].psychometric.function"),
         ("function = \"weibull\"", "", "blocks[0].psychometric.function: missing"),
         ("\"falling\"", "\"down\"", "blocks[0].psychometric.direction"),
@@ -204,7 +204,7 @@ fn each_rule_of_levels_refuses_its_breach() {
             "blocks[0].psychometric: a catch block",
         ),
         ("[blocks.psychometric]", "psychometric = 3\n[other]", "blocks[0].psychometric"),
-        ("{ id = \"fig\",", "{ id = \"fig\", level = 1,", "blocks[1].pairs[0].level = 1.0: needs"),
+        ("{ id = \"fig\",", "{ id = \"fig\", level = 1,", "blocks[1].items[0].level = 1.0: needs"),
     ];
     let good = with_levels();
     assert_eq!(problems(&good), Vec::<String>::new());

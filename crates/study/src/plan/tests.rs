@@ -1,12 +1,12 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::definition::{Block, Completion, Condition, Pair, Texts};
+use crate::definition::{Block, Completion, Condition, Item, Texts};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use std::collections::BTreeMap;
 
-fn study(seed: u64, pairs: &[usize]) -> StudyDefinition {
+fn study(seed: u64, items: &[usize]) -> StudyDefinition {
     let condition = Condition::Rendered { technique: "pa".to_owned(), knobs: BTreeMap::new(), camera: None };
     let texts = vec!["…".to_owned()];
     StudyDefinition {
@@ -27,7 +27,7 @@ fn study(seed: u64, pairs: &[usize]) -> StudyDefinition {
             thanks: texts,
         },
         conditions: [("pa".to_owned(), condition.clone()), ("mc".to_owned(), condition)].into(),
-        blocks: pairs
+        blocks: items
             .iter()
             .enumerate()
             .map(|(b, n)| Block {
@@ -36,8 +36,9 @@ fn study(seed: u64, pairs: &[usize]) -> StudyDefinition {
                 kind: Kind::Still,
                 conditions: ["pa".to_owned(), "mc".to_owned()],
                 target: "pa".to_owned(),
-                pairs: (0..*n).map(|p| Pair { id: format!("b{b}-p{p}"), scene: None, level: None }).collect(),
+                items: (0..*n).map(|p| Item { id: format!("b{b}-p{p}"), scene: None, level: None }).collect(),
                 catch: false,
+                items_key: "items",
                 psychometric: None,
             })
             .collect(),
@@ -49,7 +50,7 @@ fn study(seed: u64, pairs: &[usize]) -> StudyDefinition {
 fn lefts<'a>(plans: impl IntoIterator<Item = &'a TrialPlan>) -> BTreeMap<String, (u32, u32)> {
     let mut lefts = BTreeMap::new();
     for trial in plans.into_iter().flat_map(|plan| &plan.trials) {
-        let (left, all): &mut (u32, u32) = lefts.entry(trial.pair_id.clone()).or_default();
+        let (left, all): &mut (u32, u32) = lefts.entry(trial.item_id.clone()).or_default();
         *left += u32::from(trial.target_left);
         *all += 1;
     }
@@ -74,13 +75,13 @@ proptest! {
 
     #[test]
     fn a_plan_shows_every_pair_once_with_blocks_in_order_and_sides_even(
-        seed in 0u64..1 << 53, slot in 0u32..100_000, pairs in prop::collection::vec(1usize..9, 1..6),
+        seed in 0u64..1 << 53, slot in 0u32..100_000, items in prop::collection::vec(1usize..9, 1..6),
     ) {
-        let study = study(seed, &pairs);
+        let study = study(seed, &items);
         let plan = TrialPlan::for_slot(&study, slot);
         prop_assert_eq!(plan.trials.len(), study.trial_count());
         prop_assert!(plan.trials.windows(2).all(|w| w[0].block_index <= w[1].block_index));
-        let mut ids: Vec<_> = plan.trials.iter().map(|t| t.pair_id.clone()).collect();
+        let mut ids: Vec<_> = plan.trials.iter().map(|t| t.item_id.clone()).collect();
         ids.sort();
         ids.dedup();
         prop_assert_eq!(ids.len(), study.trial_count());
@@ -94,16 +95,16 @@ proptest! {
             of.map(|t| if t.target_left { 1i64 } else { -1 }).sum::<i64>().abs()
         };
         prop_assert!(uneven(None) <= 1);
-        for (block, n) in pairs.iter().enumerate() {
+        for (block, n) in items.iter().enumerate() {
             prop_assert!(uneven(Some(block as u32)) <= (n % 2) as i64);
         }
     }
 
     #[test]
     fn mirror_slots_balance_every_pair_and_a_plan_is_reproducible(
-        seed in 0u64..1 << 53, k in 0u32..50_000, pairs in prop::collection::vec(1usize..9, 1..6),
+        seed in 0u64..1 << 53, k in 0u32..50_000, items in prop::collection::vec(1usize..9, 1..6),
     ) {
-        let study = study(seed, &pairs);
+        let study = study(seed, &items);
         let plans = [2 * k, 2 * k + 1].map(|slot| TrialPlan::for_slot(&study, slot));
         prop_assert!(exactly_balanced(&plans));
         prop_assert_eq!(&plans[0].seed, &plans[1].seed);
@@ -124,7 +125,7 @@ proptest! {
 fn slots_seeds_and_orders_differ() {
     let study_a = study(1, &[6, 6]);
     let order = |study: &StudyDefinition, slot| -> Vec<String> {
-        TrialPlan::for_slot(study, slot).trials.into_iter().map(|t| t.pair_id).collect()
+        TrialPlan::for_slot(study, slot).trials.into_iter().map(|t| t.item_id).collect()
     };
     let orders: std::collections::BTreeSet<_> = (0..64).map(|slot| order(&study_a, slot)).collect();
     assert!(orders.len() > 60, "{} different orders of 64", orders.len());

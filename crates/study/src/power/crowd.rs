@@ -17,7 +17,7 @@ pub(super) struct Crowd<'a> {
     /// The plan of each slot.
     plans: Vec<TrialPlan>,
     /// For each pair of the study, by its place: its block's truth, and its level.
-    pairs: Vec<(Option<&'a Supposed>, Option<f64>)>,
+    items: Vec<(Option<&'a Supposed>, Option<f64>)>,
     /// How many `[[truth]]` there are.
     entries: usize,
 }
@@ -40,15 +40,15 @@ impl<'a> Crowd<'a> {
     pub(super) fn new(design: &'a Design) -> Crowd<'a> {
         let study = &design.study;
         let most = design.participants.last().copied().unwrap_or(0);
-        let pairs: Vec<_> = blocks(study)
+        let items: Vec<_> = blocks(study)
             .zip(&design.truths)
-            .flat_map(|((block, _), truth)| block.pairs.iter().map(move |pair| (truth.as_ref(), pair.level)))
+            .flat_map(|((block, _), truth)| block.items.iter().map(move |pair| (truth.as_ref(), pair.level)))
             .collect();
         let entries = design.truths.iter().flatten().map(|t| t.entry + 1).max().unwrap_or(0);
         Crowd {
             design,
             plans: (0..most).map(|slot| TrialPlan::for_slot(study, slot)).collect(),
-            pairs,
+            items,
             entries,
         }
     }
@@ -82,10 +82,10 @@ impl<'a> Crowd<'a> {
         for trial in &plan.trials[..answered] {
             // Blocks come in order: each one's first pair lies behind all pairs of those before.
             while block < trial.block_index {
-                first += self.design.study.blocks[block as usize].pairs.len();
+                first += self.design.study.blocks[block as usize].items.len();
                 block += 1;
             }
-            let (supposed, level) = self.pairs[first + trial.pair_index as usize];
+            let (supposed, level) = self.items[first + trial.item_index as usize];
             let chance = match supposed {
                 _ if careless => 0.5,
                 None => 1.0 - people.catch_errors,
@@ -98,7 +98,7 @@ impl<'a> Crowd<'a> {
             let rt_ms = median * (RT_SPREAD * random.normal()).exp();
             let chose_left = chose_target == trial.target_left;
             let row =
-                Row { session_id, pair_id: &trial.pair_id, left_condition: &trial.left, chose_left, rt_ms };
+                Row { session_id, item_id: &trial.item_id, left_condition: &trial.left, chose_left, rt_ms };
             answers.push(row);
         }
         stays
@@ -163,20 +163,20 @@ pub(super) fn moments(design: &Design, block: usize) -> Option<Moments> {
     let supposed = design.truths.get(block)?.as_ref()?;
     let of_study = &design.study.blocks[block];
     let lapsing = |chance: f64| (1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse;
-    let pairs = of_study.pairs.len() as f64;
+    let items = of_study.items.len() as f64;
     if let Truth::Preference { probability, icc } = &supposed.truth {
         let share = lapsing(*probability);
         let own = (1.0 - supposed.lapse).powi(2) * icc * probability * (1.0 - probability);
-        let variance = pairs * share * (1.0 - share) + pairs * (pairs - 1.0) * own;
-        return Some(Moments { shares: vec![share; of_study.pairs.len()], variance });
+        let variance = items * share * (1.0 - share) + items * (items - 1.0) * own;
+        return Some(Moments { shares: vec![share; of_study.items.len()], variance });
     }
     // E[Σ p], E[Σ p(1 − p)] and E[(Σ p)²] over z.
-    let (mut shares, mut within, mut square, mut weights) = (vec![0.0; of_study.pairs.len()], 0.0, 0.0, 0.0);
+    let (mut shares, mut within, mut square, mut weights) = (vec![0.0; of_study.items.len()], 0.0, 0.0, 0.0);
     for step in -60..=60 {
         let z = f64::from(step) / 10.0;
         let weight = (-0.5 * z * z).exp();
         let mut count = 0.0;
-        for (pair, mean) in of_study.pairs.iter().zip(&mut shares) {
+        for (pair, mean) in of_study.items.iter().zip(&mut shares) {
             let chance = lapsing(match &supposed.truth {
                 Truth::Quality { jod, observer_sd } => {
                     // Two deviations, of target and other.

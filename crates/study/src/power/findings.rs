@@ -73,7 +73,7 @@ impl Claims {
             let moments = moments(design, b);
             let mean = moments.as_ref().map_or(f64::NAN, |m| m.shares.iter().sum());
             let variance = moments.map_or(f64::NAN, |m| m.variance);
-            let share = Some(mean / block.pairs.len() as f64).filter(|share| share.is_finite());
+            let share = Some(mean / block.items.len() as f64).filter(|share| share.is_finite());
             let distance = (mean - block.mu()).abs();
             let of = || block.id.clone();
             for (test, _) in TESTS {
@@ -87,7 +87,7 @@ impl Claims {
                     _ => distance < 1e-12,
                 };
                 // With one choice a participant there is nobody to ignore.
-                let test = if test == PER_TRIAL && block.pairs.len() == 1 { "binomial test" } else { test };
+                let test = if test == PER_TRIAL && block.items.len() == 1 { "binomial test" } else { test };
                 tests.push(TestClaim { of: of(), test, null });
             }
             let threshold = match design.truths[b].as_ref().map(|t| &t.truth) {

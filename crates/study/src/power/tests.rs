@@ -6,17 +6,17 @@ use crate::definition::StudyDefinition;
 
 /// `blocks` of (conditions, pairs, rest of the block) with rules of screening.
 fn study(screening: &str, blocks: &[(&str, &str, usize, &str)]) -> StudyDefinition {
-    let block = |(id, conditions, pairs, rest): &(&str, &str, usize, &str)| {
+    let block = |(id, conditions, items, rest): &(&str, &str, usize, &str)| {
         let level =
             |i: usize| if rest.contains("psychometric") { format!(", level = {i}") } else { String::new() };
-        let pairs: Vec<String> =
-            (0..*pairs).map(|i| format!("{{ id = \"{id}-{i}\", scene = \"a.toml\"{} }}", level(i))).collect();
+        let items: Vec<String> =
+            (0..*items).map(|i| format!("{{ id = \"{id}-{i}\", scene = \"a.toml\"{} }}", level(i))).collect();
         let (target, _) = conditions.split_once(' ').unwrap();
         let conditions = conditions.replace(' ', "\", \"");
         format!(
             "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"{conditions}\"]\n\
              target = \"{target}\"\npairs = [{}]\n{rest}\n",
-            pairs.join(", ")
+            items.join(", ")
         )
     };
     let mut names: Vec<&str> = blocks.iter().flat_map(|b| b.1.split(' ')).collect();
@@ -183,8 +183,8 @@ fn moments_are_those_of_many_simulated_observers() {
                 [[truth]]\nblocks = [\"pref\"]\npreference = 0.7\nicc = 0.3\nlapse = 0.2\n";
     let design = design(study, text);
     let answers = Crowd::new(&design).take(0);
-    for (b, (_, pairs)) in crate::answers::blocks(&design.study).enumerate() {
-        let count = |p: &&Participant| p.answers_to(&pairs).iter().filter(|g| g.chose_target).count() as f64;
+    for (b, (_, items)) in crate::answers::blocks(&design.study).enumerate() {
+        let count = |p: &&Participant| p.answers_to(&items).iter().filter(|g| g.chose_target).count() as f64;
         let counts: Vec<f64> = answers.participants().iter().map(count).collect();
         let n = counts.len() as f64;
         let mean = counts.iter().sum::<f64>() / n;

@@ -41,7 +41,7 @@ pub struct ChoiceAnalysis {
     pub power: Vec<TPlan>,
     /// The true effect that this test, with as many participants, finds with a probability of [`DETECTION_POWER`].
     pub detectable: Option<TPlan>,
-    /// Exact sign test of the participants' numbers against half the pairs: the t-test's question without normality. Null
+    /// Exact sign test of the participants' numbers against half the items: the t-test's question without normality. Null
     /// when nobody's number differs from it.
     pub sign: Option<BinomialTest>,
     /// Wilcoxon's signed-rank test of the same numbers, ties exact; null likewise.
@@ -87,8 +87,8 @@ impl Proportion {
 
 impl ChoiceAnalysis {
     /// Judges `counts`: number of target choices out of `pairs` → number of participants. `seed` repeats the bootstrap.
-    pub fn of_counts(counts: &BTreeMap<u32, u64>, pairs: u32, seed: u64) -> ChoiceAnalysis {
-        let mu = f64::from(pairs) / 2.0;
+    pub fn of_counts(counts: &BTreeMap<u32, u64>, items: u32, seed: u64) -> ChoiceAnalysis {
+        let mu = f64::from(items) / 2.0;
         let t_test = TTest::of_counts(counts, mu);
         let mut notes = Vec::new();
         notes.extend(t_test.note.clone());
@@ -115,7 +115,7 @@ impl ChoiceAnalysis {
         let clusters: Vec<Cluster> = counts
             .iter()
             .flat_map(|(successes, people)| {
-                let cluster = Cluster { successes: u64::from(*successes), trials: u64::from(pairs) };
+                let cluster = Cluster { successes: u64::from(*successes), trials: u64::from(items) };
                 std::iter::repeat_n(cluster, usize::try_from(*people).unwrap_or_default())
             })
             .collect();
@@ -125,7 +125,7 @@ impl ChoiceAnalysis {
         let wilcoxon = wilcoxon_signed_rank(&numbers, mu).ok();
         let proportion = proportion(&clusters, seed);
         let binomial = proportion.as_ref().and_then(|p| binomial_test(p.chosen, p.trials, 0.5).ok());
-        let several = pairs > 1 && clusters.len() > 1;
+        let several = items > 1 && clusters.len() > 1;
         let mut intraclass_found = None;
         let (mut robust, mut mixed) = (None, None);
         if clusters.len() > 1 {

@@ -73,14 +73,14 @@ impl Text {
 }
 
 fn design(study: &StudyDefinition) -> String {
-    let of_kind = |kind| study.blocks.iter().filter(|b| b.kind == kind).map(|b| b.pairs.len()).sum::<usize>();
+    let of_kind = |kind| study.blocks.iter().filter(|b| b.kind == kind).map(|b| b.items.len()).sum::<usize>();
     let kinds: Vec<String> = [(Kind::Still, "still"), (Kind::Animation, "animation")]
         .into_iter()
         .map(|(kind, name)| (of_kind(kind), name))
         .filter(|(pairs, _)| *pairs > 0)
         .map(|(pairs, name)| count(pairs, name))
         .collect();
-    let catch = study.blocks.iter().filter(|b| b.catch).map(|b| b.pairs.len()).sum::<usize>();
+    let catch = study.blocks.iter().filter(|b| b.catch).map(|b| b.items.len()).sum::<usize>();
     let catch = if catch == 0 {
         String::new()
     } else {
@@ -89,7 +89,7 @@ fn design(study: &StudyDefinition) -> String {
     let [width, height] = study.size;
     format!(
         "Participants saw {} of pictures of {width} × {height} pixels ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
-         \"{}\" They had to choose one of each pair (two-alternative forced choice).{catch} Blocks came in a fixed order and pairs \
+         \"{}\" They had to choose one of each pair (two-alternative forced choice).{catch} Blocks came in a fixed order and items \
          within a block in a random one. Sides were balanced within participants and, over participants, pair by pair (mirrored plans \
          from the seed {}, given to the lowest place in the design that no completed or active session held).",
         count(study.trial_count(), "pair"),
@@ -116,7 +116,7 @@ fn screening(study: &StudyDefinition) -> String {
     if rules.incomplete {
         excluded.push("who did not finish".to_owned());
     }
-    let counted = "Each block counts the participants who answered all its pairs.";
+    let counted = "Each block counts the participants who answered all its items.";
     if excluded.is_empty() {
         format!("The study file states no rules of exclusion, and nobody was excluded. {counted}")
     } else {
@@ -139,7 +139,7 @@ fn tests(text: &mut Text, report: &Report) {
     };
     text.say(
         format!(
-            "Per block, the number of choices of the target condition by each participant was compared with half the number of pairs, \
+            "Per block, the number of choices of the target condition by each participant was compared with half the number of items, \
              μ₀, by a two-tailed one-sample t-test: t = (M − μ₀) / (SD / √n) with n − 1 degrees of freedom, where M is the mean over the n \
              participants and SD their standard deviation with n − 1 in the denominator.{holm}"
         ),
@@ -170,7 +170,7 @@ fn tests(text: &mut Text, report: &Report) {
 fn proportions(text: &mut Text, study: &StudyDefinition, report: &Report) {
     let mut said = format!(
         "The interval of the share of all choices comes from {REPLICATES} resamples of whole participants (percentile method, seed {}), \
-         because choices of one participant are not independent; intervals of single pairs, to which each participant gave one answer, are Wilson's. \
+         because choices of one participant are not independent; intervals of single items, to which each participant gave one answer, are Wilson's. \
          The binomial test is the exact two-sided one (the sum of the probabilities of all outcomes no likelier than the one seen).",
         study.seed
     );
@@ -245,7 +245,7 @@ fn scale(text: &mut Text, report: &Report) {
     text.say(said, &references);
 }
 
-/// "1 pair", "2 pairs".
+/// "1 pair", "2 items".
 fn count(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }

@@ -48,7 +48,7 @@ pub struct BlockReport {
     /// What is beside the paper's test.
     pub analysis: ChoiceAnalysis,
     /// Each pair alone, with all who answered it.
-    pub by_pair: Vec<PairReport>,
+    pub by_item: Vec<ItemReport>,
     /// How the choices depend on the pairs' level; null where the study file asks for no psychometric function.
     pub psychometric: Option<PsychometricReport>,
     /// Choices of the left picture over all trials of the block: far from a half shows a bias of side.
@@ -61,8 +61,8 @@ pub struct BlockReport {
 
 /// One pair of a block.
 #[derive(Clone, Debug, Serialize, ToSchema)]
-pub struct PairReport {
-    /// Pair's id.
+pub struct ItemReport {
+    /// Item's id.
     pub id: String,
     /// Share of target choices; one trial a participant, so Wilson's interval is right. Null without answers.
     pub target: Option<Proportion>,
@@ -91,9 +91,9 @@ impl Report {
         let blocks = blocks(study)
             .filter(|(block, _)| !block.catch)
             .zip(summaries)
-            .map(|((block, pairs), summary)| {
+            .map(|((block, items), summary)| {
                 let p_holm = summary.p.and_then(|_| corrected.next());
-                block_report(study, block, &pairs, summary, p_holm, participants)
+                block_report(study, block, &items, summary, p_holm, participants)
             })
             .collect();
         let (scale, consistency, scale_note) = match scaling::scale(study, participants) {
@@ -115,20 +115,20 @@ fn block_report(
     p_holm: Option<f64>,
     participants: &[&Participant],
 ) -> BlockReport {
-    let analysis = ChoiceAnalysis::of_counts(&summary.counts, summary.pairs as u32, study.seed);
+    let analysis = ChoiceAnalysis::of_counts(&summary.counts, summary.items as u32, study.seed);
     let seen: Vec<&[Given]> = participants.iter().map(|p| p.answers_to(places)).collect();
     let given = || seen.iter().copied().flatten();
-    let (mut chosen, mut trials) = (vec![0; block.pairs.len()], vec![0; block.pairs.len()]);
+    let (mut chosen, mut trials) = (vec![0; block.items.len()], vec![0; block.items.len()]);
     for answer in given() {
-        let pair = (answer.pair - places.start) as usize;
+        let pair = (answer.item - places.start) as usize;
         trials[pair] += 1;
         chosen[pair] += u64::from(answer.chose_target);
     }
-    let by_pair = block
-        .pairs
+    let by_item = block
+        .items
         .iter()
         .zip(chosen.into_iter().zip(trials))
-        .map(|(pair, (chosen, trials))| PairReport {
+        .map(|(pair, (chosen, trials))| ItemReport {
             id: pair.id.clone(),
             target: Proportion::of(chosen, trials),
         })
@@ -140,7 +140,7 @@ fn block_report(
     BlockReport {
         p_holm,
         analysis,
-        by_pair,
+        by_item,
         psychometric,
         left: Proportion::of(lefts, given().count() as u64),
         rt_ms: Quartiles::of_sorted(&times),

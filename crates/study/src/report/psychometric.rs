@@ -121,9 +121,9 @@ pub(super) fn of(
 ) -> Option<PsychometricReport> {
     let asked = block.psychometric.as_ref()?;
     let sign = asked.direction.sign();
-    let xs: Vec<f64> = block.pairs.iter().filter_map(|pair| pair.level).map(|level| sign * level).collect();
+    let xs: Vec<f64> = block.items.iter().filter_map(|pair| pair.level).map(|level| sign * level).collect();
     let level = |given: &Given| {
-        let x = *xs.get((given.pair - places.start) as usize)?;
+        let x = *xs.get((given.item - places.start) as usize)?;
         Some(Level { x, correct: u64::from(given.chose_target), trials: 1 })
     };
     let answered = seen.iter().filter(|answers| !answers.is_empty());

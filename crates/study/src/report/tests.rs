@@ -45,12 +45,12 @@ const PAIRS: [(&str, &str); 4] = [("a", "mc"), ("b", "mc"), ("c", "photo"), ("d"
 fn answers(people: usize, chosen: impl Fn(usize, usize) -> &'static str) -> Answers {
     let mut answers = Answers::new(&study());
     for i in 0..people {
-        for (k, (pair_id, other)) in PAIRS.into_iter().enumerate() {
+        for (k, (item_id, other)) in PAIRS.into_iter().enumerate() {
             let (chosen, chose_left) = (chosen(i, k), k == 0);
             let rest = if chosen == "pa" { other } else { "pa" };
             let left_condition = if chose_left { chosen } else { rest };
             let (session_id, rt_ms) = (&format!("p{i:02}"), 100.0 * (i + 1) as f64);
-            answers.push(Row { session_id, pair_id, left_condition, chose_left, rt_ms });
+            answers.push(Row { session_id, item_id, left_condition, chose_left, rt_ms });
         }
     }
     answers
@@ -72,7 +72,7 @@ fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
     assert_eq!(stills.p_holm, Some(1.0));
     assert_eq!(stills.analysis.intraclass.as_ref().unwrap().icc, 0.0);
     assert!((stills.analysis.proportion.as_ref().unwrap().proportion - 0.5).abs() < 1e-15);
-    assert_eq!(stills.by_pair.iter().map(|p| p.target.as_ref().unwrap().chosen).collect::<Vec<_>>(), [8, 8]);
+    assert_eq!(stills.by_item.iter().map(|p| p.target.as_ref().unwrap().chosen).collect::<Vec<_>>(), [8, 8]);
     assert_eq!(stills.left.as_ref().unwrap().chosen, 16);
     // Each participant has two equal times: quartiles of 100, 100, 200, 200, …, 1600 by R's quantile(type = 7).
     assert_eq!(stills.rt_ms, Some(Quartiles { n: 32, q1: 475.0, median: 850.0, q3: 1225.0 }));

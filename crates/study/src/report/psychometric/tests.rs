@@ -7,7 +7,7 @@ use kelir_stats::random::Random;
 
 /// A block of seven or fewer levels whose psychometric function is described by `function`.
 fn study(function: &str, levels: &[f64]) -> StudyDefinition {
-    let pairs: Vec<String> = (0..)
+    let items: Vec<String> = (0..)
         .zip(levels)
         .map(|(i, level): (u32, _)| format!("{{ id = \"p{i}\", scene = \"a.toml\", level = {level:?} }}"))
         .collect();
@@ -17,7 +17,7 @@ fn study(function: &str, levels: &[f64]) -> StudyDefinition {
          conditions = {{ full = {{ technique = \"pa\" }}, few = {{ technique = \"mc\" }} }}\n\
          [[blocks]]\nid = \"levels\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"full\", \"few\"]\n\
          target = \"full\"\npairs = [{}]\n[blocks.psychometric]\n{function}\n",
-        pairs.join(", ")
+        items.join(", ")
     );
     StudyDefinition::parse("levels.toml", &text).unwrap()
 }
@@ -34,9 +34,9 @@ fn report(
     let mut answers = Answers::new(study);
     for i in 0..participants {
         let session_id = &format!("s{i:04}");
-        for (k, pair) in block.pairs.iter().enumerate() {
+        for (k, pair) in block.items.iter().enumerate() {
             let (chose_left, left_condition) = (target(i, k), block.target.as_str());
-            answers.push(Row { session_id, pair_id: &pair.id, left_condition, chose_left, rt_ms: 500.0 });
+            answers.push(Row { session_id, item_id: &pair.id, left_condition, chose_left, rt_ms: 500.0 });
         }
     }
     Report::of(study, &answers.participants()).blocks[0].psychometric.clone().unwrap()
