@@ -1,6 +1,6 @@
 //! What the answers of a study add up to: the paper's test, block by block.
 
-use crate::answers::{Participant, conditions, tallies};
+use crate::answers::{Participant, compares, conditions, tallies};
 use crate::definition::{Kind, StudyDefinition};
 use kelir_stats::inference::t_test_from_counts;
 use kelir_stats::pairwise::{Scale, ScaleOptions, Wins, scale};
@@ -17,19 +17,21 @@ pub struct BlockSummary {
     pub id: String,
     /// Block's title.
     pub title: String,
+    /// How its trials ask.
+    pub trial: String,
     /// Stills or animations.
     pub kind: Kind,
     /// The two conditions.
     pub conditions: [String; 2],
     /// The condition whose choices are counted.
     pub target: String,
-    /// Number of pairs.
+    /// Number of items.
     pub items: usize,
-    /// Participants who answered all pairs.
+    /// Participants who answered all items, or went to the end of an adaptive procedure.
     pub n: u64,
     /// Participants who answered some but not all, left out.
     pub incomplete: u64,
-    /// Number of target choices → number of participants, from 0 to `pairs`.
+    /// Number of target choices → number of participants, from 0 to `items`; empty for an adaptive block.
     pub counts: BTreeMap<u32, u64>,
     /// Mean number of target choices; null when n = 0.
     pub mean: Option<f64>,
@@ -56,10 +58,14 @@ pub fn summarise(study: &StudyDefinition, participants: &[&Participant]) -> Vec<
         .filter(|(block, _)| !block.catch)
         .map(|(block, tally)| {
             let counts: BTreeMap<u32, u64> = (0..).zip(tally.complete).collect();
-            let test = TTest::of_counts(&counts, block.mu());
+            let test = match block.adaptive {
+                None => TTest::of_counts(&counts, block.mu()),
+                Some(_) => TTest { n: tally.finished, note: Some(STEERED.to_owned()), ..TTest::default() },
+            };
             BlockSummary {
                 id: block.id.clone(),
                 title: block.title.clone(),
+                trial: block.trial.name().to_owned(),
                 kind: block.kind,
                 conditions: block.conditions.clone(),
                 target: block.target.clone(),
@@ -91,7 +97,7 @@ pub fn conditions_scale(study: &StudyDefinition, participants: &[&Participant]) 
     }
     let place = |name: &str| names.iter().position(|known| known == name).unwrap_or_default();
     let mut wins = Wins::new(names.len());
-    let compared = study.blocks.iter().zip(tallies(study, participants)).filter(|(block, _)| !block.catch);
+    let compared = study.blocks.iter().zip(tallies(study, participants)).filter(|(block, _)| compares(block));
     compared
         .into_iter()
         .try_for_each(|(block, tally)| {
@@ -102,6 +108,10 @@ pub fn conditions_scale(study: &StudyDefinition, participants: &[&Participant]) 
         .and_then(|()| scale(&names, &wins, ScaleOptions::default()))
         .map_err(|error| format!("No scale: {error}."))
 }
+
+/// Why an adaptive block has no test of its counts.
+pub(crate) const STEERED: &str =
+    "the procedure steers how often the target is chosen: see the psychometric function";
 
 /// Why two conditions have no scale.
 pub(crate) const TOO_FEW_CONDITIONS: &str =

@@ -1,9 +1,10 @@
 //! What a study is, once its file has been read and found right.
 
+use crate::adaptive::Adaptive;
+use crate::trials::TrialKind;
 use kelir_stats::psychometric::{Lapse, Sigmoid};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
@@ -101,11 +102,17 @@ pub struct Block {
     #[serde(alias = "pairs")]
     pub items: Vec<Item>,
     /// What the file calls them, for messages: `items`, or `pairs` in files that are older.
-    #[serde(skip, default = "items_key")]
-    pub items_key: &'static str,
+    #[serde(skip)]
+    pub items_key: ItemsKey,
     /// Whether the target is the right answer that attention alone is needed for; such a block screens and is not analysed.
     #[serde(default, skip_serializing_if = "is_default")]
     pub catch: bool,
+    /// How each trial asks, with its settings.
+    #[serde(flatten)]
+    pub trial: TrialKind,
+    /// Which item comes next, where the answers decide; absent: each comes once.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub adaptive: Option<Adaptive>,
     /// The curve that is fitted to the shares of target choices over the pairs' levels.
     #[serde(default, skip_serializing_if = "is_default")]
     pub psychometric: Option<Psychometric>,
@@ -189,8 +196,26 @@ pub struct Screening {
     pub incomplete: bool,
 }
 
-fn items_key() -> &'static str {
-    "items"
+/// A key of the file that is no part of what it says: all are equal.
+#[derive(Clone, Copy, Debug)]
+pub struct ItemsKey(pub &'static str);
+
+impl Default for ItemsKey {
+    fn default() -> ItemsKey {
+        ItemsKey("items")
+    }
+}
+
+impl PartialEq for ItemsKey {
+    fn eq(&self, _: &ItemsKey) -> bool {
+        true
+    }
+}
+
+impl std::fmt::Display for ItemsKey {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0)
+    }
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -198,19 +223,9 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 impl StudyDefinition {
-    /// SHA-256 (hex) over the definition's canonical JSON: comments and layout of the file do not count, every value does.
-    pub fn config_hash(&self) -> String {
-        hex(&Sha256::digest(self.canonical_json()))
-    }
-
-    /// The definition as JSON text with fixed key order; [`StudyDefinition`] reads it back.
-    pub fn canonical_json(&self) -> String {
-        serde_json::to_string(self).expect("a definition holds only finite numbers and string keys")
-    }
-
-    /// Number of trials a participant sees.
-    pub fn trial_count(&self) -> usize {
-        self.blocks.iter().map(|block| block.items.len()).sum()
+    /// The most trials that a participant can see; fewer where an adaptive block ends early.
+    pub fn most_trials(&self) -> usize {
+        self.blocks.iter().map(Block::most_trials).sum()
     }
 
     /// The block with this id.
@@ -223,6 +238,11 @@ impl Block {
     /// Expected number of target choices of someone who cannot tell: half the pairs.
     pub fn mu(&self) -> f64 {
         self.items.len() as f64 / 2.0
+    }
+
+    /// The most trials that a participant can see of it.
+    pub fn most_trials(&self) -> usize {
+        self.adaptive.as_ref().map_or(self.items.len(), Adaptive::most_trials)
     }
 
     /// The condition that is not the target.

@@ -105,6 +105,12 @@ impl<'a> Fields<'a> {
         self.get(key, rule, read)
     }
 
+    /// The table under `key`; a problem where it is something else.
+    pub(crate) fn table(&mut self, key: &'static str) -> Option<Fields<'a>> {
+        let value = self.raw(key)?;
+        Fields::of(self.gatherer, self.path_of(key), value)
+    }
+
     /// The entries of an array of tables with their paths; a problem where it is something else or absent.
     pub(crate) fn tables(&mut self, key: &'static str) -> Vec<Fields<'a>> {
         let items = self.need(key, "an array of tables with at least one", |v| {

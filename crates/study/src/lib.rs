@@ -13,11 +13,15 @@ pub mod answers;
 pub mod plan;
 pub mod power;
 pub mod report;
+pub mod schema;
 pub mod screening;
+pub mod trials;
+pub mod versions;
 
 pub use definition::{
     Block, Completion, Condition, Direction, GUESS, Item, Kind, Psychometric, Screening, StudyDefinition,
     Texts,
 };
-pub use plan::{Trial, TrialPlan};
+pub use plan::{Decision, Trial, TrialPlan, next_trials};
 pub use problems::{Problem, StudyErrors};
+pub use trials::TrialKind;

@@ -1,10 +1,14 @@
 //! From a study file's text to a [`StudyDefinition`], or to every problem it has.
 
+mod adaptive;
 mod psychometric;
 
-use crate::definition::{Block, Completion, Condition, Item, Kind, Screening, StudyDefinition, Texts};
+use crate::definition::{
+    Block, Completion, Condition, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts,
+};
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
 use crate::problems::{Problem, StudyErrors};
+use crate::trials::TrialKind;
 use serde_json::Value as Json;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::{Table, Value};
@@ -210,28 +214,50 @@ fn read_blocks(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Vec<Block> {
             items.extend(id.map(|id| Item { id, scene, level }));
         }
         let psychometric = psychometric::read(gatherer, &mut fields, key, &items, catch);
+        let adaptive = adaptive::read(&mut fields);
+        if adaptive.is_some() && psychometric.is_none() {
+            fields.report(
+                "adaptive",
+                None,
+                "needs the block's [blocks.psychometric], whose levels it moves over",
+            );
+        }
+        let trial = TrialKind::read(&mut fields);
         fields.finish();
-        if let (Some(id), Some(title), Some(kind), Some(conditions), Some(target)) =
-            (id, title, kind, conditions, target)
+        if let (Some(id), Some(title), Some(kind), Some(conditions), Some(target), Some(trial)) =
+            (id, title, kind, conditions, target, trial)
         {
-            blocks.push(Block {
+            let (items_key, block_index) = (ItemsKey(key), blocks.len());
+            let block = Block {
                 id,
                 title,
                 kind,
                 conditions,
                 target,
                 items,
-                items_key: key,
+                items_key,
                 catch,
+                trial,
+                adaptive,
                 psychometric,
-            });
+            };
+            check_adaptive(gatherer, block_index, &block);
+            blocks.push(block);
         }
     }
-    let trials: usize = blocks.iter().map(|b| b.items.len()).sum();
+    let trials: usize = blocks.iter().map(Block::most_trials).sum();
     if trials > 10_000 {
-        gatherer.report("blocks", None, format!("have {trials} pairs; a study has at most 10000"));
+        gatherer.report("blocks", None, format!("have {trials} trials; a study has at most 10000"));
     }
     blocks
+}
+
+/// Whether the procedure goes with the block's levels.
+fn check_adaptive(gatherer: &Gatherer<'_>, index: usize, block: &Block) {
+    let (Some(adaptive), Some(_)) = (&block.adaptive, &block.psychometric) else { return };
+    if let Err(error) = adaptive.next_level(block, []) {
+        gatherer.report(&format!("blocks[{index}].adaptive"), None, error.to_string());
+    }
 }
 
 /// The key that the block's items stand under: `items`, or `pairs` as it used to be called.

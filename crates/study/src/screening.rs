@@ -1,6 +1,6 @@
 //! Who is left out: the rules of the study file, applied the same way each time.
 
-use crate::answers::{Given, Participant, blocks};
+use crate::answers::{Given, Participant, blocks, trials_asked};
 use crate::definition::StudyDefinition;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -23,7 +23,7 @@ pub enum Exclusion {
         /// How many there may be.
         allowed: u32,
     },
-    /// The same side in every trial.
+    /// The same side, or the same interval, in every trial.
     StraightLining {
         /// How many trials there were.
         trials: u32,
@@ -37,7 +37,7 @@ pub enum Exclusion {
     },
 }
 
-/// Fewest trials in which always choosing one side says anything: by chance it happens once in 2⁴ times then.
+/// Fewest trials in which always choosing one place says anything: by chance it happens once in 2⁴ times then.
 const STRAIGHT: usize = 5;
 
 /// Every reason of the study's rules to leave this participant out; none: they stay.
@@ -61,14 +61,16 @@ pub fn screen(study: &StudyDefinition, participant: &Participant) -> Vec<Exclusi
         }
     }
     if rules.straight_lining && answers.len() >= STRAIGHT {
-        let lefts = count(&|a| a.chose_left) as usize;
-        if lefts == 0 || lefts == answers.len() {
+        let firsts = count(&|a| a.chose_first) as usize;
+        if firsts == 0 || firsts == answers.len() {
             reasons.push(Exclusion::StraightLining { trials: answers.len() as u32 });
         }
     }
-    if rules.incomplete && answers.len() < study.trial_count() {
-        let (answered, trials) = (answers.len() as u32, study.trial_count() as u32);
-        reasons.push(Exclusion::Incomplete { answered, trials });
+    if rules.incomplete {
+        let (answered, trials) = (answers.len() as u32, trials_asked(study, participant) as u32);
+        if answered < trials {
+            reasons.push(Exclusion::Incomplete { answered, trials });
+        }
     }
     reasons
 }
@@ -108,8 +110,8 @@ mod tests {
             let item_id = &format!("{}{}", if i < 3 { "main" } else { "easy" }, i % 3);
             let chosen = if i < 3 { "mc" } else { catch[i - 3] };
             let other = if chosen == "mc" { "pa" } else { "mc" };
-            let left_condition = if chose_left { chosen } else { other };
-            answers.push(Row { session_id: "s", item_id, left_condition, chose_left, rt_ms: rt_ms[i] });
+            let sides = if chose_left { [chosen, other] } else { [other, chosen] };
+            answers.push(Row::choice("s", i as u32, item_id, sides, chose_left, rt_ms[i]));
         }
         answers.participants()[0].clone()
     }

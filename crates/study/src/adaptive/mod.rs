@@ -5,11 +5,13 @@
 //! A [`Staircase`] tracks one proportion and needs no model; [`QuestPlus`] measures threshold, width and lapse rate together with fewer
 //! trials, and its interval is a posterior's.
 
+mod block;
 mod quest;
 mod staircase;
 #[cfg(test)]
 mod tests;
 
+pub use block::Adaptive;
 pub use quest::{QuestPlus, QuestPlusRule};
 pub use staircase::{Bracket, Staircase, StaircaseRule, Track};
 

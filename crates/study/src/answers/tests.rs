@@ -53,13 +53,7 @@ impl Told {
     }
 
     fn row(&self) -> Row<'_> {
-        Row {
-            session_id: &self.session,
-            item_id: &self.pair,
-            left_condition: &self.left,
-            chose_left: self.chose_left,
-            rt_ms: self.rt_ms,
-        }
+        Row::choice(&self.session, 0, &self.pair, [&self.left, &self.right], self.chose_left, self.rt_ms)
     }
 }
 
@@ -105,7 +99,7 @@ fn excluded(study: &StudyDefinition, rows: &[&Told]) -> BTreeSet<String> {
         let failed = own.iter().any(|r| r.block == "easy" && r.chosen() != "c");
         let lefts = own.iter().filter(|r| r.chose_left).count();
         let straight = own.len() >= 5 && (lefts == 0 || lefts == own.len());
-        fast || failed || straight || own.len() < study.trial_count()
+        fast || failed || straight || own.len() < study.most_trials()
     });
     out.map(str::to_owned).collect()
 }
@@ -218,7 +212,7 @@ fn a_report_counts_sides_times_and_pairs_as_the_rows_do_and_notices_one_changed_
                 let hits = own.iter().filter(|r| r.chosen() == block.summary.target).count() as u64;
                 pair.target.as_ref().is_some_and(|t| (t.chosen, t.trials) == (hits, own.len() as u64))
             });
-            let left = block.left.as_ref().unwrap();
+            let left = block.first.as_ref().unwrap();
             items
                 && (left.chosen, left.trials) == (lefts, of_block.len() as u64)
                 && block.rt_ms.unwrap().n == left.trials
@@ -235,19 +229,15 @@ fn a_report_counts_sides_times_and_pairs_as_the_rows_do_and_notices_one_changed_
 fn what_the_study_does_not_know_is_left_out() {
     let study = study();
     let mut answers = Answers::new(&study);
-    let row = |item_id, left_condition| Row {
-        session_id: "s",
-        item_id,
-        left_condition,
-        chose_left: true,
-        rt_ms: 1.0,
-    };
-    answers.push(row("ghost", "a"));
-    answers.push(row("ab0", "c"));
+    let row = |item, left, right| Row::choice("s", 0, item, [left, right], true, 1.0);
+    answers.push(row("ghost", "a", "b"));
+    answers.push(row("ab0", "c", "b"));
+    answers.push(row("ab0", "a", "c"));
+    answers.push(row("ab0", "a", "a"));
     assert!(answers.is_empty() && answers.participants().is_empty());
-    answers.push(row("ab0", "b"));
+    answers.push(row("ab0", "b", "a"));
     let [given] = answers.participants()[0].answers()[..] else { panic!("one answer") };
-    assert_eq!((given.item, given.chose_target, given.chose_left), (0, true, true));
+    assert_eq!((given.item, given.chose_target, given.chose_first), (0, true, true));
     assert_eq!(
         screen(&study, answers.participants()[0])[0],
         Exclusion::Incomplete { answered: 1, trials: 8 }

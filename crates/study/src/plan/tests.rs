@@ -38,7 +38,9 @@ fn study(seed: u64, items: &[usize]) -> StudyDefinition {
                 target: "pa".to_owned(),
                 items: (0..*n).map(|p| Item { id: format!("b{b}-p{p}"), scene: None, level: None }).collect(),
                 catch: false,
-                items_key: "items",
+                items_key: Default::default(),
+                trial: TrialKind::TwoAlternative,
+                adaptive: None,
                 psychometric: None,
             })
             .collect(),
@@ -51,7 +53,7 @@ fn lefts<'a>(plans: impl IntoIterator<Item = &'a TrialPlan>) -> BTreeMap<String,
     let mut lefts = BTreeMap::new();
     for trial in plans.into_iter().flat_map(|plan| &plan.trials) {
         let (left, all): &mut (u32, u32) = lefts.entry(trial.item_id.clone()).or_default();
-        *left += u32::from(trial.target_left);
+        *left += u32::from(trial.is_first("pa"));
         *all += 1;
     }
     lefts
@@ -79,20 +81,20 @@ proptest! {
     ) {
         let study = study(seed, &items);
         let plan = TrialPlan::for_slot(&study, slot);
-        prop_assert_eq!(plan.trials.len(), study.trial_count());
+        prop_assert_eq!(plan.trials.len(), study.most_trials());
         prop_assert!(plan.trials.windows(2).all(|w| w[0].block_index <= w[1].block_index));
         let mut ids: Vec<_> = plan.trials.iter().map(|t| t.item_id.clone()).collect();
         ids.sort();
         ids.dedup();
-        prop_assert_eq!(ids.len(), study.trial_count());
+        prop_assert_eq!(ids.len(), study.most_trials());
         for (i, trial) in plan.trials.iter().enumerate() {
             prop_assert_eq!(trial.trial_index as usize, i);
-            prop_assert_eq!(trial.target_left, trial.left == "pa");
-            prop_assert!(trial.left != trial.right);
+            let shown: Vec<_> = trial.shown.values().map(|placed| &*placed.condition).collect();
+            prop_assert_eq!(shown, if trial.is_first("pa") { ["pa", "mc"] } else { ["mc", "pa"] });
         }
         let uneven = |block: Option<u32>| {
             let of = plan.trials.iter().filter(|t| block.is_none_or(|b| t.block_index == b));
-            of.map(|t| if t.target_left { 1i64 } else { -1 }).sum::<i64>().abs()
+            of.map(|t| if t.is_first("pa") { 1i64 } else { -1 }).sum::<i64>().abs()
         };
         prop_assert!(uneven(None) <= 1);
         for (block, n) in items.iter().enumerate() {
@@ -142,4 +144,104 @@ fn sides_are_independent_of_the_pair_over_many_slots() {
         assert_eq!(all, 2000);
         assert!((888..=1112).contains(&left), "{pair}: {left} of 2000");
     }
+}
+
+/// A fixed block, an adaptive one over seven levels of two items each, and a fixed one again.
+fn growing(procedure: &str, seed: u64) -> StudyDefinition {
+    let fixed = |id: &str| {
+        let items: Vec<String> =
+            (0..3).map(|i| format!("{{ id = \"{id}{i}\", scene = \"a.toml\" }}")).collect();
+        format!(
+            "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\nitems = [{}]\n",
+            items.join(", ")
+        )
+    };
+    let levels: Vec<String> =
+        (0..14).map(|i| format!("{{ id = \"l{i}\", scene = \"a.toml\", level = {} }}", i / 2)).collect();
+    let text = format!(
+        "title = \"t\"\nquestion = \"q\"\nseed = {seed}\nsize = [64, 36]\nestimated_minutes = 1\n\
+         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
+         conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }} }}\n{}\
+         [[blocks]]\nid = \"levels\"\ntitle = \"t\"\nkind = \"still\"\ntrial = \"two-interval\"\nconditions = [\"pa\", \"mc\"]\n\
+         target = \"pa\"\nitems = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n\
+         [blocks.adaptive]\n{procedure}\n{}",
+        fixed("before"),
+        levels.join(", "),
+        fixed("after"),
+    );
+    StudyDefinition::parse("s.toml", &text).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+const STAIRCASE: &str = "procedure = \"staircase\"\ntrials = 30\nreversals = 6\ndown = 2";
+const QUEST: &str = "procedure = \"quest-plus\"\ntrials = 12";
+
+/// Takes a study to its end: the answer to trial i is `answers[i]` (whether the target was chosen).
+fn take(study: &StudyDefinition, slot: u32, answers: &[bool]) -> Vec<Trial> {
+    let TrialPlan { mut trials, mut more, .. } = TrialPlan::for_slot(study, slot);
+    let mut answered = 0;
+    while more {
+        answered += 1;
+        let next =
+            next_trials(study, slot, &trials, &|i| answers.get(i as usize).copied().filter(|_| i < answered));
+        more = next.more;
+        trials.extend(next.trials);
+    }
+    trials
+}
+
+proptest! {
+    #![proptest_config(Config { cases: 60, ..config() })]
+
+    #[test]
+    fn a_growing_plan_is_a_function_of_slot_and_answers(
+        seed in 0u64..1 << 53, slot in 0u32..1000, answers in prop::collection::vec(any::<bool>(), 40), cut in 0usize..40,
+        quest in any::<bool>(),
+    ) {
+        let study = growing(if quest { QUEST } else { STAIRCASE }, seed);
+        let trials = take(&study, slot, &answers);
+        let levels: Vec<&Trial> = trials.iter().filter(|t| t.block_id == "levels").collect();
+        prop_assert!(trials.iter().enumerate().all(|(i, t)| t.trial_index as usize == i));
+        prop_assert!(trials.windows(2).all(|w| w[0].block_index <= w[1].block_index));
+        prop_assert_eq!(trials.iter().filter(|t| t.block_id == "after").count(), 3);
+        prop_assert!(trials.len() <= study.most_trials() && (!quest || levels.len() == 12));
+
+        // A reload in the midst: what was decided stands, and what follows is the same.
+        let cut = cut.min(trials.len());
+        let next = next_trials(&study, slot, &trials[..cut], &|i| answers.get(i as usize).copied().filter(|_| (i as usize) < cut));
+        for (again, first) in next.trials.iter().zip(&trials[cut..]) {
+            prop_assert_eq!(again, first);
+        }
+        prop_assert!(!next.trials.is_empty() || cut == trials.len());
+
+        // Steered: it begins at the easiest level and stays there only as long as the answers say so.
+        let easiest = |t: &&&Trial| t.item_index >= 12;
+        if !quest {
+            prop_assert!(easiest(&&levels[0]));
+        }
+        // Both items of a level are shown in turn, and the target comes first in one of every two trials.
+        for pair in levels.chunks_exact(2) {
+            prop_assert!(pair[0].is_first("pa") != pair[1].is_first("pa"));
+        }
+        let mirror = take(&study, slot ^ 1, &answers);
+        for (a, b) in levels.iter().zip(mirror.iter().filter(|t| t.block_id == "levels")) {
+            prop_assert_eq!((&a.item_id, a.is_first("pa")), (&b.item_id, !b.is_first("pa")));
+        }
+        for (i, trial) in levels.iter().enumerate() {
+            let before = levels[..i].iter().filter(|t| t.item_id == trial.item_id).count();
+            prop_assert_eq!(trial.repeat as usize, before);
+        }
+    }
+}
+
+#[test]
+fn a_staircase_over_levels_walks_as_levitt_wrote() {
+    // Two down, one up from the easiest of seven levels, by 4, 2, then 1 level; worked out by hand.
+    let study = growing(STAIRCASE, 1);
+    let answers = [[true; 3].as_slice(), &[true, true, true, false, true, true, false, true]].concat();
+    let mut answers = answers;
+    answers.resize(40, true);
+    let trials = take(&study, 0, &answers);
+    let levels: Vec<u32> =
+        trials.iter().filter(|t| t.block_id == "levels").map(|t| t.item_index / 2).collect();
+    assert_eq!(levels[..9], [6, 6, 2, 2, 4, 4, 3, 4, 4]);
 }

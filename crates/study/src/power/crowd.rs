@@ -3,10 +3,11 @@
 use super::design::{Design, Supposed, Truth};
 use crate::answers::{Answers, Row, blocks};
 use crate::definition::{Block, GUESS};
-use crate::plan::TrialPlan;
+use crate::plan::{Trial, TrialPlan, next_trials};
 use kelir_stats::pairwise::Model;
 use kelir_stats::psychometric::Curve;
 use kelir_stats::random::Random;
+use std::borrow::Cow;
 
 /// Standard deviation of the logarithm of response times.
 const RT_SPREAD: f64 = 0.4;
@@ -18,6 +19,8 @@ pub(super) struct Crowd<'a> {
     plans: Vec<TrialPlan>,
     /// For each pair of the study, by its place: its block's truth, and its level.
     items: Vec<(Option<&'a Supposed>, Option<f64>)>,
+    /// For each block, the place of its first item.
+    first_items: Vec<usize>,
     /// How many `[[truth]]` there are.
     entries: usize,
 }
@@ -49,6 +52,7 @@ impl<'a> Crowd<'a> {
             design,
             plans: (0..most).map(|slot| TrialPlan::for_slot(study, slot)).collect(),
             items,
+            first_items: blocks(study).map(|(_, items)| items.start as usize).collect(),
             entries,
         }
     }
@@ -62,46 +66,61 @@ impl<'a> Crowd<'a> {
         let mut slot = 0;
         for person in 0..self.plans.len() {
             let mut random = Random::stream(seed, person as u64);
-            let finished = self.answer(&mut random, &format!("{person:06}"), &self.plans[slot], &mut answers);
+            let finished = self.answer(&mut random, &format!("{person:06}"), slot, &mut answers);
             slot += usize::from(finished);
         }
         answers
     }
 
-    /// One person's answers to a plan; whether they finished.
-    fn answer(&self, random: &mut Random, session_id: &str, plan: &TrialPlan, answers: &mut Answers) -> bool {
-        let people = &self.design.observers;
+    /// One person's answers to a slot's plan; whether they finished.
+    fn answer(&self, random: &mut Random, session_id: &str, slot: usize, answers: &mut Answers) -> bool {
+        let (study, people) = (&self.design.study, &self.design.observers);
+        let plan = &self.plans[slot];
         let careless = random.bernoulli(people.careless);
         let stays = !random.bernoulli(people.dropout);
-        let last = random.below(plan.trials.len());
+        let last = random.below(study.most_trials());
         let own = self.own(random);
         let median = if careless { people.careless_rt_ms } else { people.rt_median_ms };
-        let answered = if stays { plan.trials.len() } else { last };
-        let mut first = 0;
-        let mut block = 0;
-        for trial in &plan.trials[..answered] {
-            // Blocks come in order: each one's first pair lies behind all pairs of those before.
-            while block < trial.block_index {
-                first += self.design.study.blocks[block as usize].items.len();
-                block += 1;
-            }
-            let (supposed, level) = self.items[first + trial.item_index as usize];
-            let chance = match supposed {
-                _ if careless => 0.5,
-                None => 1.0 - people.catch_errors,
-                Some(supposed) => {
-                    let chance = self.chance(supposed, block as usize, level, &own[supposed.entry]);
-                    (1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse
+        let most = if stays { usize::MAX } else { last };
+        let (mut trials, mut more) = (Cow::Borrowed(&plan.trials), plan.more);
+        let mut chose = Vec::new();
+        while chose.len() < most {
+            if chose.len() == trials.len() {
+                if !more {
+                    break;
                 }
-            };
+                let given = |trial: u32| chose.get(trial as usize).copied();
+                let next = next_trials(study, slot as u32, &trials, &given);
+                more = next.more;
+                trials.to_mut().extend(next.trials);
+                continue;
+            }
+            let trial = &trials[chose.len()];
+            let chance = self.chance_in(trial, careless, &own);
             let chose_target = random.bernoulli(chance);
             let rt_ms = median * (RT_SPREAD * random.normal()).exp();
-            let chose_left = chose_target == trial.target_left;
-            let row =
-                Row { session_id, item_id: &trial.item_id, left_condition: &trial.left, chose_left, rt_ms };
-            answers.push(row);
+            let chose_first =
+                chose_target == trial.is_first(&study.blocks[trial.block_index as usize].target);
+            if let Some(observation) = trial.trial.rules().chose(&trial.shown, chose_first, rt_ms) {
+                answers.push(Row { session_id, trial_index: trial.trial_index, observation });
+            }
+            chose.push(chose_target);
         }
         stays
+    }
+
+    /// Probability that this observer chooses the target in a trial.
+    fn chance_in(&self, trial: &Trial, careless: bool, own: &[Own]) -> f64 {
+        let block = trial.block_index as usize;
+        let (supposed, level) = self.items[self.first_items[block] + trial.item_index as usize];
+        match supposed {
+            _ if careless => 0.5,
+            None => 1.0 - self.design.observers.catch_errors,
+            Some(supposed) => {
+                let chance = self.chance(supposed, block, level, &own[supposed.entry]);
+                (1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse
+            }
+        }
     }
 
     /// What is this observer's own, by entry of the design.
@@ -158,10 +177,10 @@ pub(super) struct Moments {
 }
 
 /// The moments of a block's choices by observers who answer all of it with care; by a sum over their own normal deviations where there is
-/// no closed form. `None` for a catch block.
+/// no closed form. `None` for a catch block, and for an adaptive one, whose levels the answers choose.
 pub(super) fn moments(design: &Design, block: usize) -> Option<Moments> {
     let supposed = design.truths.get(block)?.as_ref()?;
-    let of_study = &design.study.blocks[block];
+    let of_study = design.study.blocks.get(block).filter(|block| block.adaptive.is_none())?;
     let lapsing = |chance: f64| (1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse;
     let items = of_study.items.len() as f64;
     if let Truth::Preference { probability, icc } = &supposed.truth {

@@ -2,7 +2,7 @@
 
 use super::crowd::moments;
 use super::design::{Design, Truth};
-use crate::answers::{blocks, conditions};
+use crate::answers::{blocks, compares, conditions};
 use crate::report::{ChoiceAnalysis, Report};
 use kelir_stats::inference::Bounds;
 use kelir_stats::pairwise::{ScaleOptions, Wins, scale};
@@ -11,7 +11,8 @@ use kelir_stats::pairwise::{ScaleOptions, Wins, scale};
 pub(super) struct Claims {
     pub(super) tests: Vec<TestClaim>,
     pub(super) intervals: Vec<IntervalClaim>,
-    blocks: usize,
+    /// Of each analysed block, whether a procedure steers its choices.
+    steered: Vec<bool>,
     differences: usize,
 }
 
@@ -100,7 +101,12 @@ impl Claims {
                 ("threshold, posterior", threshold),
                 ("threshold, participants resampled", threshold),
             ] {
-                if !interval.starts_with("threshold") || block.psychometric.is_some() {
+                let there = match interval.starts_with("threshold") {
+                    true => block.psychometric.is_some(),
+                    // A procedure steers the share.
+                    false => block.adaptive.is_none(),
+                };
+                if there {
                     intervals.push(IntervalClaim { of: of(), interval, truth });
                 }
             }
@@ -119,14 +125,15 @@ impl Claims {
                 truth: *truth,
             });
         }
-        Claims { tests, intervals, blocks: analysed.len(), differences: differences.len() }
+        let steered = analysed.iter().map(|&b| design.study.blocks[b].adaptive.is_some()).collect();
+        Claims { tests, intervals, steered, differences: differences.len() }
     }
 
     /// What a report claims at the level `alpha`.
     pub(super) fn check(&self, report: &Report, alpha: f64) -> Outcome {
         let (mut tests, mut intervals) = (Vec::new(), Vec::new());
-        debug_assert_eq!(report.blocks.len(), self.blocks);
-        for block in &report.blocks {
+        debug_assert_eq!(report.blocks.len(), self.steered.len());
+        for (block, steered) in report.blocks.iter().zip(&self.steered) {
             let analysis = &block.analysis;
             for (test, p) in TESTS {
                 if test == SECOND {
@@ -136,8 +143,10 @@ impl Claims {
             }
             let proportion = analysis.proportion.as_ref();
             let resampled = proportion.and_then(|p| p.by_participant.as_ref());
-            intervals.push(resampled.map(|b| [b.low, b.high]));
-            intervals.push(proportion.map(|p| [p.wilson.low, p.wilson.high]));
+            if !steered {
+                intervals.push(resampled.map(|b| [b.low, b.high]));
+                intervals.push(proportion.map(|p| [p.wilson.low, p.wilson.high]));
+            }
             if let Some(psychometric) = &block.psychometric {
                 let fit = psychometric.fit.as_ref();
                 intervals.push(fit.map(|f| [f.threshold.low, f.threshold.high]));
@@ -159,7 +168,7 @@ fn true_differences(design: &Design) -> Vec<(String, String, Option<f64>)> {
     // Endless: shares are then known to nine digits.
     const ENDLESS: f64 = 1e9;
     let study = &design.study;
-    let compared = || blocks(study).enumerate().filter(|(_, (block, _))| !block.catch);
+    let compared = || blocks(study).enumerate().filter(|(_, (block, _))| compares(block));
     let names = conditions(study);
     if names.len() < 3 {
         return Vec::new();

@@ -24,8 +24,8 @@ use utoipa::ToSchema;
 pub struct Power {
     /// Study's id.
     pub study: String,
-    /// Version of the study.
-    pub config_hash: String,
+    /// Hash of the study's design; which pictures it shows makes no difference here.
+    pub design_hash: String,
     /// Simulated studies of each size.
     pub simulations: u64,
     /// Seed that repeats them.
@@ -289,7 +289,7 @@ impl Sums {
             .collect();
         Power {
             study: design.study.id.clone(),
-            config_hash: design.study.config_hash(),
+            design_hash: design.study.design_hash(),
             simulations: design.simulations,
             seed: design.seed,
             alpha: design.alpha,

@@ -86,6 +86,26 @@ impl Proportion {
 }
 
 impl ChoiceAnalysis {
+    /// Nothing, and why: of a block whose numbers of choices say nothing.
+    pub(super) fn none(why: &Option<String>) -> ChoiceAnalysis {
+        ChoiceAnalysis {
+            t_test: TTest { note: why.clone(), ..TTest::default() },
+            effect: None,
+            equivalence: Vec::new(),
+            bayes: None,
+            power: Vec::new(),
+            detectable: None,
+            sign: None,
+            wilcoxon: None,
+            binomial: None,
+            proportion: None,
+            intraclass: None,
+            robust_logit: None,
+            mixed_logit: None,
+            notes: why.iter().cloned().collect(),
+        }
+    }
+
     /// Judges `counts`: number of target choices out of `pairs` → number of participants. `seed` repeats the bootstrap.
     pub fn of_counts(counts: &BTreeMap<u32, u64>, items: u32, seed: u64) -> ChoiceAnalysis {
         let mu = f64::from(items) / 2.0;

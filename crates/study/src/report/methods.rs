@@ -92,7 +92,7 @@ fn design(study: &StudyDefinition) -> String {
          \"{}\" They had to choose one of each pair (two-alternative forced choice).{catch} Blocks came in a fixed order and items \
          within a block in a random one. Sides were balanced within participants and, over participants, pair by pair (mirrored plans \
          from the seed {}, given to the lowest place in the design that no completed or active session held).",
-        count(study.trial_count(), "pair"),
+        count(study.most_trials(), "pair"),
         kinds.join(", "),
         count(study.blocks.len(), "block"),
         study.surround,

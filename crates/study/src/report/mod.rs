@@ -14,6 +14,7 @@ pub use scaling::{Consistency, Triads};
 use crate::analysis::{BlockSummary, summarise};
 use crate::answers::{Given, Participant, blocks};
 use crate::definition::{Block, StudyDefinition};
+use crate::trials::Role;
 use kelir_stats::inference::holm;
 use kelir_stats::pairwise::ScaleIntervals;
 use serde::Serialize;
@@ -47,12 +48,14 @@ pub struct BlockReport {
     pub p_holm: Option<f64>,
     /// What is beside the paper's test.
     pub analysis: ChoiceAnalysis,
-    /// Each pair alone, with all who answered it.
+    /// Each item alone, with all who answered it; empty for an adaptive block, which shows one item many times.
     pub by_item: Vec<ItemReport>,
     /// How the choices depend on the pairs' level; null where the study file asks for no psychometric function.
     pub psychometric: Option<PsychometricReport>,
-    /// Choices of the left picture over all trials of the block: far from a half shows a bias of side.
-    pub left: Option<Proportion>,
+    /// The role that stands first: left, or the first interval.
+    pub first_role: Role,
+    /// Choices of what stood first, over all trials of the block: far from a half shows a bias of side, or of order.
+    pub first: Option<Proportion>,
     /// Response times in ms; null without answers.
     pub rt_ms: Option<Quartiles>,
     /// Their 1st to 99th percentile, interpolated likewise; empty without answers.
@@ -115,7 +118,10 @@ fn block_report(
     p_holm: Option<f64>,
     participants: &[&Participant],
 ) -> BlockReport {
-    let analysis = ChoiceAnalysis::of_counts(&summary.counts, summary.items as u32, study.seed);
+    let analysis = match block.adaptive {
+        None => ChoiceAnalysis::of_counts(&summary.counts, summary.items as u32, study.seed),
+        Some(_) => ChoiceAnalysis::none(&summary.note),
+    };
     let seen: Vec<&[Given]> = participants.iter().map(|p| p.answers_to(places)).collect();
     let given = || seen.iter().copied().flatten();
     let (mut chosen, mut trials) = (vec![0; block.items.len()], vec![0; block.items.len()]);
@@ -128,6 +134,7 @@ fn block_report(
         .items
         .iter()
         .zip(chosen.into_iter().zip(trials))
+        .filter(|_| block.adaptive.is_none())
         .map(|(pair, (chosen, trials))| ItemReport {
             id: pair.id.clone(),
             target: Proportion::of(chosen, trials),
@@ -136,13 +143,14 @@ fn block_report(
     let psychometric = psychometric::of(block, places, &seen, study.seed);
     let mut times: Vec<f64> = given().map(|answer| answer.rt_ms).filter(|ms| ms.is_finite()).collect();
     times.sort_by(f64::total_cmp);
-    let lefts = given().filter(|answer| answer.chose_left).count() as u64;
+    let firsts = given().filter(|answer| answer.chose_first).count() as u64;
     BlockReport {
         p_holm,
         analysis,
         by_item,
         psychometric,
-        left: Proportion::of(lefts, given().count() as u64),
+        first_role: block.trial.rules().roles()[0],
+        first: Proportion::of(firsts, given().count() as u64),
         rt_ms: Quartiles::of_sorted(&times),
         rt_percentiles_ms: (1..100).filter_map(|p| quantile(&times, f64::from(p) / 100.0)).collect(),
         summary,

@@ -129,10 +129,16 @@ pub(super) fn of(
     let answered = seen.iter().filter(|answers| !answers.is_empty());
     let people: Vec<Vec<Level>> =
         answered.map(|answers| answers.iter().filter_map(level).collect()).collect();
-    Some(judge(asked, &xs, &people, seed))
+    Some(judge(asked, &xs, &people, block.adaptive.is_some(), seed))
 }
 
-fn judge(asked: &Psychometric, xs: &[f64], people: &[Vec<Level>], seed: u64) -> PsychometricReport {
+fn judge(
+    asked: &Psychometric,
+    xs: &[f64],
+    people: &[Vec<Level>],
+    adaptive: bool,
+    seed: u64,
+) -> PsychometricReport {
     let sign = asked.direction.sign();
     let mut levels: Vec<Level> = xs.iter().map(|&x| Level { x, correct: 0, trials: 0 }).collect();
     levels.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -144,7 +150,7 @@ fn judge(asked: &Psychometric, xs: &[f64], people: &[Vec<Level>], seed: u64) -> 
         }
     }
     let mut notes = Vec::new();
-    let fit = match fit(asked, &levels, people, seed, &mut notes) {
+    let fit = match fit(asked, &levels, people, adaptive, seed, &mut notes) {
         Ok(fit) => Some(fit),
         Err(error) => {
             notes.push(format!("No psychometric function: {error}."));
@@ -163,6 +169,7 @@ fn fit(
     asked: &Psychometric,
     levels: &[Level],
     people: &[Vec<Level>],
+    adaptive: bool,
     seed: u64,
     notes: &mut Vec<String>,
 ) -> Result<PsychometricFit, kelir_stats::StatsError> {
@@ -178,6 +185,13 @@ fn fit(
     }
     if goodness.is_some_and(|g| g.p_simulated < 0.05) {
         notes.push("The curve misses the data by more than chance would (deviance): trust no threshold of it without a look at the plot.".to_owned());
+    }
+    if adaptive {
+        notes.push(
+            "A procedure chose the levels from the answers. The fitted curve takes account of that, a single level's share does not: it is \
+             drawn towards the share that the procedure looks for."
+                .to_owned(),
+        );
     }
     if people.iter().any(|own| own.len() > 1) {
         notes.push(

@@ -48,9 +48,9 @@ fn answers(people: usize, chosen: impl Fn(usize, usize) -> &'static str) -> Answ
         for (k, (item_id, other)) in PAIRS.into_iter().enumerate() {
             let (chosen, chose_left) = (chosen(i, k), k == 0);
             let rest = if chosen == "pa" { other } else { "pa" };
-            let left_condition = if chose_left { chosen } else { rest };
+            let sides = if chose_left { [chosen, rest] } else { [rest, chosen] };
             let (session_id, rt_ms) = (&format!("p{i:02}"), 100.0 * (i + 1) as f64);
-            answers.push(Row { session_id, item_id, left_condition, chose_left, rt_ms });
+            answers.push(Row::choice(session_id, k as u32, item_id, sides, chose_left, rt_ms));
         }
     }
     answers
@@ -73,7 +73,7 @@ fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
     assert_eq!(stills.analysis.intraclass.as_ref().unwrap().icc, 0.0);
     assert!((stills.analysis.proportion.as_ref().unwrap().proportion - 0.5).abs() < 1e-15);
     assert_eq!(stills.by_item.iter().map(|p| p.target.as_ref().unwrap().chosen).collect::<Vec<_>>(), [8, 8]);
-    assert_eq!(stills.left.as_ref().unwrap().chosen, 16);
+    assert_eq!(stills.first.as_ref().unwrap().chosen, 16);
     // Each participant has two equal times: quartiles of 100, 100, 200, 200, …, 1600 by R's quantile(type = 7).
     assert_eq!(stills.rt_ms, Some(Quartiles { n: 32, q1: 475.0, median: 850.0, q3: 1225.0 }));
     let scale = report.scale.unwrap();
@@ -92,7 +92,7 @@ fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
 fn an_empty_study_gives_a_report_that_says_so() {
     let report = Report::of(&study(), &[]);
     for block in &report.blocks {
-        assert!(block.summary.note.is_some() && block.p_holm.is_none() && block.left.is_none());
+        assert!(block.summary.note.is_some() && block.p_holm.is_none() && block.first.is_none());
         assert!(block.analysis.effect.is_none() && block.analysis.proportion.is_none());
         assert!(!block.analysis.notes.is_empty());
     }

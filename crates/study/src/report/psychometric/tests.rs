@@ -35,8 +35,8 @@ fn report(
     for i in 0..participants {
         let session_id = &format!("s{i:04}");
         for (k, pair) in block.items.iter().enumerate() {
-            let (chose_left, left_condition) = (target(i, k), block.target.as_str());
-            answers.push(Row { session_id, item_id: &pair.id, left_condition, chose_left, rt_ms: 500.0 });
+            let sides = [block.target.as_str(), block.other()];
+            answers.push(Row::choice(session_id, k as u32, &pair.id, sides, target(i, k), 500.0));
         }
     }
     Report::of(study, &answers.participants()).blocks[0].psychometric.clone().unwrap()

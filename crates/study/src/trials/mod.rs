@@ -1,0 +1,204 @@
+//! Kinds of trials: what each shows in which role, what an answer to it is, and what that answer says.
+//!
+//! Adding one is a variant of [`TrialKind`] with its file here, and a folder of its name in `web/participant/trials/`.
+
+mod choice;
+mod taken;
+#[cfg(test)]
+mod tests;
+mod two_alternative;
+mod two_interval;
+
+pub use taken::{Input, Taken};
+pub use two_alternative::{Arrangement, Side, TwoAlternativeAnswer};
+pub use two_interval::{Interval, Intervals, StepFrames, StepTimes, TwoIntervalAnswer};
+
+use crate::fields::Fields;
+use crate::schema::{FieldError, Record};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use utoipa::ToSchema;
+
+/// How a trial asks, with the settings of its kind: a block's `trial` and `[blocks.trial_settings]`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(tag = "trial", content = "trial_settings", rename_all = "kebab-case")]
+pub enum TrialKind {
+    /// Two pictures at once, beside or below each other; which one?
+    #[default]
+    TwoAlternative,
+    /// One picture, then another; which one?
+    TwoInterval(Intervals),
+}
+
+/// The place that a stimulus has in its trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// On the left, or above.
+    Left,
+    /// On the right, or below.
+    Right,
+    /// In the first interval.
+    First,
+    /// In the second interval.
+    Second,
+}
+
+impl Role {
+    /// Every role of any kind.
+    pub const ALL: [Role; 4] = [Role::Left, Role::Right, Role::First, Role::Second];
+
+    /// The name in data and addresses.
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Left => "left",
+            Role::Right => "right",
+            Role::First => "first",
+            Role::Second => "second",
+        }
+    }
+
+    /// The role of this name.
+    pub fn named(name: &str) -> Option<Role> {
+        Role::ALL.into_iter().find(|role| role.name() == name)
+    }
+}
+
+/// Which condition of which item a role shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Placed<'a> {
+    /// Item's id.
+    #[serde(borrow)]
+    pub item: Cow<'a, str>,
+    /// Condition's name.
+    #[serde(borrow)]
+    pub condition: Cow<'a, str>,
+}
+
+/// What a trial shows, by role.
+pub type Shown<'a> = BTreeMap<Role, Placed<'a>>;
+
+/// Reads what a trial shows into texts of its own.
+pub(crate) fn owned<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Shown<'static>, D::Error> {
+    let own = |text: Cow<'de, str>| Cow::Owned(text.into_owned());
+    let shown = Shown::<'de>::deserialize(deserializer)?.into_iter();
+    Ok(shown.map(|(role, p)| (role, Placed { item: own(p.item), condition: own(p.condition) })).collect())
+}
+
+/// An answer that was found right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Checked {
+    /// What was answered, as canonical JSON: it is stored and hashed as it is.
+    pub answer: String,
+}
+
+/// What the statistics take from an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Observation<'a> {
+    /// One of two conditions of an item was chosen.
+    Choice(Choice<'a>),
+}
+
+/// A choice between two conditions of one item.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice<'a> {
+    /// Item's id.
+    pub item: Cow<'a, str>,
+    /// The condition that stood first: on the left, or in the first interval.
+    pub first_condition: Cow<'a, str>,
+    /// The other condition.
+    pub second_condition: Cow<'a, str>,
+    /// Whether the first was chosen.
+    pub chose_first: bool,
+    /// Response time in ms.
+    pub rt_ms: f64,
+}
+
+/// What every kind of trial knows.
+pub trait TrialRules: Sync {
+    /// The kind's name in study files and data.
+    fn name(&self) -> &'static str;
+
+    /// The roles that its stimuli have, in the order shown.
+    fn roles(&self) -> &'static [Role];
+
+    /// What is shown where, with the target before or after the other condition.
+    fn plan(&self, item: &str, target: &str, other: &str, target_first: bool) -> Shown<'static>;
+
+    /// Checks what a page sent as an answer.
+    ///
+    /// # Errors
+    /// Every field that is wrong.
+    fn check(&self, sent: &Value) -> Result<Checked, Vec<FieldError>>;
+
+    /// What a page sends: the columns of its rows, their types, units, ranges and meanings.
+    fn schema(&self) -> Record;
+
+    /// What a stored answer says.
+    ///
+    /// # Errors
+    /// Why it says nothing, as a sentence.
+    fn observe<'a>(&self, shown: &Shown<'a>, answer: &str) -> Result<Observation<'a>, String>;
+
+    /// The role chosen by a stored answer; `None` where there is none.
+    fn chosen(&self, answer: &str) -> Option<Role>;
+
+    /// What the choice of the first or the second stimulus says, without an answer's text; `None` where a role has no stimulus.
+    fn chose<'a>(&self, shown: &Shown<'a>, chose_first: bool, rt_ms: f64) -> Option<Observation<'a>>;
+
+    /// The answer of somebody who chooses the first or the second stimulus after `rt_ms`, as a page sends it.
+    fn simulate(&self, chose_first: bool, rt_ms: f64) -> Value;
+}
+
+impl TrialKind {
+    /// One of each kind, with the settings that a study file gets when it names none.
+    pub fn all() -> [TrialKind; 2] {
+        [TrialKind::TwoAlternative, TrialKind::TwoInterval(Intervals::default())]
+    }
+
+    /// What this kind knows.
+    pub fn rules(&self) -> &'static dyn TrialRules {
+        match self {
+            TrialKind::TwoAlternative => &two_alternative::TwoAlternative,
+            TrialKind::TwoInterval(_) => &two_interval::TwoInterval,
+        }
+    }
+
+    /// The kind's name in study files and data.
+    pub fn name(&self) -> &'static str {
+        self.rules().name()
+    }
+
+    /// The settings that its page is given; none where the kind has none.
+    pub fn settings(&self) -> Option<Value> {
+        serde_json::to_value(self).ok()?.get("trial_settings").cloned()
+    }
+
+    /// Reads a block's `trial` and `[blocks.trial_settings]`; `None` where something is wrong, which has been reported.
+    pub(crate) fn read(block: &mut Fields<'_>) -> Option<TrialKind> {
+        let names = TrialKind::all().map(|kind| format!("\"{}\"", kind.name())).join(" or ");
+        let asked = match block.has("trial") {
+            false => Some(TrialKind::default()),
+            true => block.get("trial", &names, |v| {
+                TrialKind::all().into_iter().find(|kind| v.as_str() == Some(kind.name()))
+            }),
+        };
+        match asked? {
+            TrialKind::TwoInterval(_) => two_interval::read(block).map(TrialKind::TwoInterval),
+            TrialKind::TwoAlternative => {
+                if let Some(settings) = block.raw("trial_settings") {
+                    block.report("trial_settings", Some(settings), "this kind of trial has no settings");
+                    return None;
+                }
+                Some(TrialKind::TwoAlternative)
+            }
+        }
+    }
+}
+
+/// The rules of the kind of this name, as rows name it.
+pub fn rules(name: &str) -> Option<&'static dyn TrialRules> {
+    TrialKind::all().into_iter().map(|kind| kind.rules()).find(|rules| rules.name() == name)
+}

@@ -1,0 +1,86 @@
+//! What every page says of how a trial was taken, whatever its kind.
+
+use crate::schema::worded;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+worded! {
+    /// What an answer was given with.
+    pub enum Input {
+        /// a mouse
+        Mouse = "mouse",
+        /// a finger
+        Touch = "touch",
+        /// a stylus
+        Pen = "pen",
+        /// a key
+        Keyboard = "keyboard",
+    }
+}
+
+/// What every page says of how a trial was taken. A stimulus pixel is one of the picture, a device pixel one of the display, a CSS pixel one of the page.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Taken {
+    /// From the first frame at which an answer was possible (the stimuli in view, or the question after two intervals) to the answer.
+    #[schema(minimum = 0, maximum = 86400000, extensions(("x-unit" = json!("ms"))))]
+    pub rt: f64,
+    /// When that frame was shown, by the page's own clock.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1e12, extensions(("x-unit" = json!("ms"))))]
+    pub onset: Option<f64>,
+    /// From the start of the page's session to the answer.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1e12, extensions(("x-unit" = json!("ms"))))]
+    pub time_elapsed: Option<f64>,
+    /// Plugin that showed the trial.
+    #[serde(default)]
+    #[schema(max_length = 100)]
+    pub trial_type: Option<String>,
+    /// Version of that plugin.
+    #[serde(default)]
+    #[schema(max_length = 100)]
+    pub plugin_version: Option<String>,
+    /// What the answer was given with.
+    #[serde(default)]
+    pub input: Option<Input>,
+    /// Device pixels per stimulus pixel, pinch zoom included; 1 is native. Shown on device_pixel_ratio × css_width_px device pixels.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 100)]
+    pub scale: Option<f64>,
+    /// Width at which each stimulus stood, pinch zoom included: its width in pixels × scale / device_pixel_ratio.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1e6, extensions(("x-unit" = json!("CSS px"))))]
+    pub css_width_px: Option<f64>,
+    /// Device pixels per CSS pixel.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 100)]
+    pub device_pixel_ratio: Option<f64>,
+    /// Width and height of the window's inside, CSS px.
+    #[serde(default)]
+    #[schema(min_items = 2, max_items = 2)]
+    pub viewport: Option<Vec<f64>>,
+    /// Measured refresh rate of the display; empty where it could not be measured.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 10000, extensions(("x-unit" = json!("Hz"))))]
+    pub refresh_hz: Option<f64>,
+    /// How long the page was hidden during the trial.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1e12, extensions(("x-unit" = json!("ms"))))]
+    pub hidden_ms: Option<f64>,
+    /// The shortest time for which any of the trial's stimuli was in view before the answer.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1e12, extensions(("x-unit" = json!("ms"))))]
+    pub min_visible_ms: Option<f64>,
+    /// How often the page had been reloaded.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1000000000)]
+    pub reload_count: Option<u32>,
+    /// When the browser had the answer, by its own clock, ISO 8601.
+    #[serde(default)]
+    #[schema(max_length = 100)]
+    pub timestamp: Option<String>,
+    /// Of animations: how each was played, by role.
+    #[serde(default)]
+    pub frames: Option<Map<String, Value>>,
+}

@@ -1,0 +1,128 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::versions::canonical;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed};
+use serde_json::json;
+
+#[test]
+fn every_kind_has_its_own_name_and_is_found_by_it() {
+    for kind in TrialKind::all() {
+        assert!(std::ptr::addr_eq(rules(kind.name()).unwrap(), kind.rules()));
+        let json = serde_json::to_value(&kind).unwrap();
+        assert_eq!(json["trial"], kind.name());
+        assert_eq!(serde_json::from_value::<TrialKind>(json).unwrap(), kind);
+    }
+    let names: std::collections::BTreeSet<_> = TrialKind::all().iter().map(TrialKind::name).collect();
+    assert_eq!(names.len(), TrialKind::all().len());
+    assert!(rules("three-alternative").is_none());
+}
+
+#[test]
+fn what_is_planned_is_what_is_observed_for_each_kind_order_and_choice() {
+    for kind in TrialKind::all() {
+        let rules = kind.rules();
+        for (target_first, chose_first) in [(true, true), (true, false), (false, true), (false, false)] {
+            let shown = rules.plan("item", "target", "other", target_first);
+            assert_eq!(shown.keys().copied().collect::<Vec<_>>(), rules.roles());
+            let sent = rules.simulate(chose_first, 812.5);
+            let checked = rules.check(&sent).unwrap();
+            let Observation::Choice(choice) = rules.observe(&shown, &checked.answer).unwrap();
+            assert_eq!(
+                (choice.item.as_ref(), choice.rt_ms, choice.chose_first),
+                ("item", 812.5, chose_first)
+            );
+            assert_eq!(choice.first_condition == "target", target_first);
+            assert_ne!(choice.first_condition, choice.second_condition);
+            assert_eq!(rules.chosen(&checked.answer), Some(rules.roles()[usize::from(!chose_first)]));
+            assert_eq!(rules.chose(&shown, chose_first, 812.5), Some(Observation::Choice(choice)));
+        }
+        let shown = rules.plan("item", "target", "other", true);
+        let other = if kind.name() == "two-interval" { "left" } else { "first" };
+        let foreign = json!({ "choice": other, "rt_ms": 1.0 }).to_string();
+        assert!(rules.observe(&shown, &foreign).is_err(), "another kind's answer says nothing");
+        assert!(
+            rules.observe(&Shown::new(), &rules.check(&rules.simulate(true, 1.0)).unwrap().answer).is_err()
+        );
+    }
+}
+
+#[test]
+fn answers_that_break_a_rule_are_refused_with_field_value_and_rule() {
+    let good = json!({
+        "choice": "left", "rt": 812.5, "onset": 100.25, "time_elapsed": 5000, "trial_type": "two-alternative", "plugin_version": "1",
+        "input": "pen", "scale": 1.0, "arrangement": "stack", "device_pixel_ratio": 2, "viewport": [1280, 800], "refresh_hz": null,
+        "hidden_ms": 0, "min_visible_ms": 800, "css_width_px": 296.0, "reload_count": 0, "timestamp": "2026-11-22T10:30:00.000Z",
+        "frames": { "left": { "shown": [1, 2] } }, "something": "of its own",
+    });
+    let rules = TrialKind::TwoAlternative.rules();
+    assert_eq!(rules.check(&good).unwrap().answer, r#"{"choice":"left","rt_ms":812.5}"#);
+    let cases = [
+        ("choice", json!("first"), "\"left\" or \"right\""),
+        ("choice", json!(3), "\"left\" or \"right\""),
+        ("rt", json!(-1), "from 0 to 86400000"),
+        ("rt", json!(86_400_000.5), "from 0 to 86400000"),
+        ("rt", json!("fast"), "a number"),
+        ("onset", json!(-0.5), "from 0"),
+        ("scale", json!(101), "from 0 to 100"),
+        ("input", json!("nose"), "\"pen\""),
+        ("arrangement", json!("above"), "\"side\" or \"stack\""),
+        ("viewport", json!([1280]), "a list of 2"),
+        ("viewport", json!([1280, "800"]), "a number"),
+        ("timestamp", json!("x".repeat(101)), "at most 100"),
+        ("reload_count", json!(1.5), "a whole number"),
+    ];
+    for (field, value, rule) in cases {
+        let mut sent = good.clone();
+        sent[field] = value.clone();
+        let errors = rules.check(&sent).unwrap_err();
+        assert_eq!(errors.len(), 1, "{field} = {value}: {errors:?}");
+        assert!(
+            errors[0].pointer.starts_with(&format!("/{field}")) && errors[0].rule.contains(rule),
+            "{errors:?}"
+        );
+    }
+    let errors = rules.check(&json!({ "scale": -1, "viewport": 3 })).unwrap_err();
+    let pointers: Vec<_> = errors.iter().map(|error| error.pointer.as_str()).collect();
+    assert_eq!(pointers.iter().collect::<std::collections::BTreeSet<_>>().len(), 4, "{errors:?}");
+    assert!(rules.check(&json!([])).is_err() && rules.check(&Value::Null).is_err());
+}
+
+#[test]
+fn the_codebook_says_type_unit_meaning_and_values_of_every_column() {
+    for kind in TrialKind::all() {
+        for column in kind.rules().schema().columns() {
+            assert!(column.meaning.len() > 10, "{column:?}");
+            assert!(column.kind == "text" || column.values.is_empty(), "{column:?}");
+        }
+    }
+    let columns = TrialKind::TwoAlternative.rules().schema().columns();
+    let column = |name: &str| columns.iter().find(|column| column.name == name).unwrap();
+    assert_eq!((column("rt").kind.as_str(), column("rt").unit.as_str()), ("number", "ms"));
+    let values = |name| column(name).values.iter().map(|v| v.value.as_str()).collect::<Vec<_>>();
+    assert_eq!(values("arrangement"), ["side", "stack"]);
+    assert_eq!(column("arrangement").values[1].meaning, "the right one below the left one");
+    assert_eq!(values("input"), ["mouse", "touch", "pen", "keyboard"]);
+    assert_eq!(column("viewport").kind, "list");
+    assert!(column("scale").meaning.starts_with("Device pixels per stimulus pixel"));
+}
+
+proptest! {
+    #![proptest_config(Config { cases: 2000, rng_seed: RngSeed::Fixed(20_261_128), failure_persistence: None, ..Config::default() })]
+
+    /// What is stored is what is read back, to the bit, but for −0, which canonical JSON does not have.
+    #[test]
+    fn response_times_survive_being_stored(bits in any::<u64>()) {
+        let rt = f64::from_bits(bits);
+        let sent = json!({ "choice": "left", "rt": rt });
+        let checked = TrialKind::TwoAlternative.rules().check(&sent);
+        prop_assert_eq!(checked.is_ok(), (0.0..=86_400_000.0).contains(&rt));
+        let answer = checked.map_or_else(|_| json!({ "choice": "left", "rt_ms": rt.to_string() }).to_string(), |c| c.answer);
+        let back: Value = serde_json::from_str(&answer).unwrap();
+        prop_assert_eq!(&canonical(&back).unwrap(), &answer);
+        if let Some(read) = back["rt_ms"].as_f64() {
+            prop_assert_eq!((read + 0.0).to_bits(), (rt + 0.0).to_bits());
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! One picture, then another; which one?
+
+use super::{Checked, Observation, Role, Shown, Taken, TrialRules, choice};
+use crate::fields::{Fields, number};
+use crate::schema::{FieldError, Record, worded};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::sync::LazyLock;
+use toml::Value as Toml;
+use utoipa::ToSchema;
+
+const ROLES: [Role; 2] = [Role::First, Role::Second];
+
+/// How long each step of a two-interval trial is asked to last, in ms. A page rounds each to whole frames of its display.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Intervals {
+    /// A cross in the middle, 0 (none) to 10000.
+    #[schema(minimum = 0, maximum = 10000)]
+    pub fixation_ms: f64,
+    /// The first stimulus, 1 to 60000.
+    #[schema(minimum = 1, maximum = 60000)]
+    pub first_ms: f64,
+    /// Noise in its place, 0 (none) to 10000.
+    #[schema(minimum = 0, maximum = 10000)]
+    pub mask_ms: f64,
+    /// The second stimulus, 1 to 60000.
+    #[schema(minimum = 1, maximum = 60000)]
+    pub second_ms: f64,
+}
+
+impl Default for Intervals {
+    fn default() -> Intervals {
+        Intervals { fixation_ms: 500.0, first_ms: 500.0, mask_ms: 250.0, second_ms: 500.0 }
+    }
+}
+
+worded! {
+    /// One of the two intervals.
+    pub enum Interval {
+        /// the one that came first
+        First = "first",
+        /// the one that came second
+        Second = "second",
+    }
+}
+
+/// A duration for each step of the trial, in ms.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StepTimes {
+    /// The fixation cross.
+    #[schema(minimum = 0, maximum = 1e9, extensions(("x-unit" = json!("ms"))))]
+    pub fixation: f64,
+    /// The first stimulus.
+    #[schema(minimum = 0, maximum = 1e9, extensions(("x-unit" = json!("ms"))))]
+    pub first: f64,
+    /// The mask between.
+    #[schema(minimum = 0, maximum = 1e9, extensions(("x-unit" = json!("ms"))))]
+    pub mask: f64,
+    /// The second stimulus.
+    #[schema(minimum = 0, maximum = 1e9, extensions(("x-unit" = json!("ms"))))]
+    pub second: f64,
+}
+
+/// A number of whole frames for each step of the trial.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct StepFrames {
+    /// The fixation cross.
+    pub fixation: u32,
+    /// The first stimulus.
+    pub first: u32,
+    /// The mask between.
+    pub mask: u32,
+    /// The second stimulus.
+    pub second: u32,
+}
+
+/// What a page sends for a two-interval trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TwoIntervalAnswer {
+    /// The interval chosen.
+    pub choice: Interval,
+    /// How long each step was asked to last: fixation, first, mask, second.
+    #[serde(default)]
+    pub requested_ms: Option<StepTimes>,
+    /// Whole frames of the display's measured refresh that each step was to last.
+    #[serde(default)]
+    pub shown_frames: Option<StepFrames>,
+    /// How long each step lasted, between the times of the frames that began and ended it.
+    #[serde(default)]
+    pub shown_ms: Option<StepTimes>,
+    /// How often the sequence began again because the page was hidden in the midst of it.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1000000)]
+    pub restarts: Option<u32>,
+    /// How the trial was taken.
+    #[serde(flatten)]
+    pub taken: Taken,
+}
+
+/// `[blocks.trial_settings]`; `None` where something is wrong, which has been reported.
+pub(super) fn read(block: &mut Fields<'_>) -> Option<Intervals> {
+    let usual = Intervals::default();
+    let Some(mut fields) = block.table("trial_settings") else {
+        return (!block.has("trial_settings")).then_some(usual);
+    };
+    let read = |low: f64, high: f64| move |v: &Toml| number(v, low, high);
+    let mut step = |key, rule, low, high, usual| match fields.has(key) {
+        true => fields.get(key, rule, read(low, high)),
+        false => Some(usual),
+    };
+    let found = (
+        step("fixation_ms", "milliseconds from 0 to 10000", 0.0, 1e4, usual.fixation_ms),
+        step("first_ms", "milliseconds from 1 to 60000", 1.0, 6e4, usual.first_ms),
+        step("mask_ms", "milliseconds from 0 to 10000", 0.0, 1e4, usual.mask_ms),
+        step("second_ms", "milliseconds from 1 to 60000", 1.0, 6e4, usual.second_ms),
+    );
+    fields.finish();
+    let (fixation_ms, first_ms, mask_ms, second_ms) = found;
+    Some(Intervals {
+        fixation_ms: fixation_ms?,
+        first_ms: first_ms?,
+        mask_ms: mask_ms?,
+        second_ms: second_ms?,
+    })
+}
+
+pub(super) struct TwoInterval;
+
+impl TrialRules for TwoInterval {
+    fn name(&self) -> &'static str {
+        "two-interval"
+    }
+
+    fn roles(&self) -> &'static [Role] {
+        &ROLES
+    }
+
+    fn plan(&self, item: &str, target: &str, other: &str, target_first: bool) -> Shown<'static> {
+        choice::plan(ROLES, item, target, other, target_first)
+    }
+
+    fn check(&self, sent: &Value) -> Result<Checked, Vec<FieldError>> {
+        static SCHEMA: LazyLock<Record> = LazyLock::new(Record::of::<TwoIntervalAnswer>);
+        choice::check(&SCHEMA, sent)
+    }
+
+    fn schema(&self) -> Record {
+        Record::of::<TwoIntervalAnswer>()
+    }
+
+    fn observe<'a>(&self, shown: &Shown<'a>, answer: &str) -> Result<Observation<'a>, String> {
+        choice::observe(ROLES, shown, answer)
+    }
+
+    fn chosen(&self, answer: &str) -> Option<Role> {
+        choice::chosen(answer)
+    }
+
+    fn chose<'a>(&self, shown: &Shown<'a>, chose_first: bool, rt_ms: f64) -> Option<Observation<'a>> {
+        choice::chose(ROLES, shown, chose_first, rt_ms)
+    }
+
+    fn simulate(&self, chose_first: bool, rt_ms: f64) -> Value {
+        let choice = if chose_first { Interval::First } else { Interval::Second };
+        json!({ "choice": choice, "rt": rt_ms, "trial_type": self.name() })
+    }
+}
