@@ -26,6 +26,9 @@ pub enum StoreError {
         /// The hash that the bytes should have.
         sha256: String,
     },
+    /// Bytes that are to be shown are no picture.
+    #[error("a stimulus {0}")]
+    Undecodable(String),
     /// A stored text could not be read back.
     #[error("stored {what} cannot be read: {message}")]
     Corrupt {

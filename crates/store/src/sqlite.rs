@@ -2,6 +2,7 @@
 
 use crate::error::StoreError;
 use crate::files::Files;
+use crate::upgrade;
 use sqlx::SqlSafeStr;
 use sqlx::migrate::{Migration, MigrationType, Migrator};
 use sqlx::sqlite::{
@@ -11,9 +12,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Applied migrations never change; a new one is a new line.
-const MIGRATIONS: [(i64, &str, &str); 2] = [
+const MIGRATIONS: [(i64, &str, &str); 3] = [
     (1, "first", include_str!("../../../migrations/sqlite/0001_first.sql")),
     (2, "sessions counted", include_str!("../../../migrations/sqlite/0002_sessions_counted.sql")),
+    (
+        3,
+        "versions, trials, answers",
+        include_str!("../../../migrations/sqlite/0003_versions_trials_answers.sql"),
+    ),
 ];
 
 /// The database's name in its data folder.
@@ -53,6 +59,7 @@ impl Store {
         let reader =
             SqlitePoolOptions::new().max_connections(4).connect_with(options.read_only(true)).await?;
         let files = Files::open(folder.join("stimuli"))?;
+        upgrade::from_first_layout(&writer, &files).await?;
         Ok(Store { writer, reader, files, folder: folder.to_owned() })
     }
 

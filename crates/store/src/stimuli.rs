@@ -3,6 +3,7 @@
 use crate::clock;
 use crate::error::StoreError;
 use crate::files::is_sha256;
+use crate::pixels;
 use crate::sqlite::Store;
 use serde::Serialize;
 use serde_json::Value;
@@ -17,6 +18,10 @@ pub struct StimulusInfo {
     pub media_type: String,
     /// Size in bytes.
     pub size_bytes: u64,
+    /// Hash of its decoded pixels.
+    pub pixels_sha256: String,
+    /// [width, height] in pixels.
+    pub size: [u32; 2],
 }
 
 /// A finished rendering job.
@@ -30,57 +35,95 @@ pub struct Render {
     pub provenance: Value,
 }
 
-/// What one pair of a study shows under one condition.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// What one item of a study shows under one condition.
+#[derive(Clone, Debug, PartialEq)]
 pub struct StudyStimulus {
-    /// Pair's id.
-    pub pair: String,
+    /// Item's id.
+    pub item: String,
     /// Condition's name.
     pub condition: String,
     /// Hash of the stimulus.
     pub sha256: String,
+    /// Hash of its decoded pixels.
+    pub pixels_sha256: String,
+    /// [width, height] in pixels.
+    pub size: [u32; 2],
     /// How it was made, with its measured error.
     pub provenance: Value,
 }
 
+/// Media type of an animation's manifest.
+pub const ANIMATION: &str = "application/vnd.kelir.animation+json";
+
 impl Store {
-    /// Stores bytes and returns their hash; file first, row second, so that a row never points at nothing.
-    pub async fn put_stimulus(&self, media_type: &str, bytes: Vec<u8>) -> Result<String, StoreError> {
-        let (files, size) = (self.files.clone(), bytes.len() as i64);
-        let sha256 = blocking(move || files.put(&bytes)).await?;
+    /// Stores bytes and returns what is known of them; file first, row second, so that a row never points at nothing. The frames that a
+    /// manifest names are to be stored before it.
+    ///
+    /// # Errors
+    /// They are no picture and no animation ([`StoreError::Undecodable`]), or they cannot be stored.
+    pub async fn put_stimulus(&self, media_type: &str, bytes: Vec<u8>) -> Result<StimulusInfo, StoreError> {
+        let (files, size_bytes, kind) = (self.files.clone(), bytes.len() as u64, media_type.to_owned());
+        let (sha256, pixels) = blocking(move || {
+            let frame = |name: &str| files.get(name).ok().flatten();
+            let pixels = pixels::of(&kind, &bytes, &frame).map_err(StoreError::Undecodable)?;
+            Ok((files.put(&bytes)?, pixels))
+        })
+        .await?;
+        let [width, height] = pixels.size;
         sqlx::query(
-            "INSERT INTO stimuli (sha256, media_type, size_bytes, created_at) VALUES ($1, $2, $3, $4)
-             ON CONFLICT (sha256) DO NOTHING",
+            "INSERT INTO stimuli (sha256, media_type, size_bytes, created_at, pixels_sha256, width, height)
+             VALUES ($1, $2, $3, $4, $5, $6, $7)
+             ON CONFLICT (sha256) DO UPDATE SET pixels_sha256 = excluded.pixels_sha256, width = excluded.width, height = excluded.height",
         )
         .bind(&sha256)
         .bind(media_type)
-        .bind(size)
+        .bind(size_bytes as i64)
         .bind(clock::now())
+        .bind(&pixels.sha256)
+        .bind(width)
+        .bind(height)
         .execute(&self.writer)
         .await?;
-        Ok(sha256)
+        let (media_type, pixels_sha256) = (media_type.to_owned(), pixels.sha256);
+        Ok(StimulusInfo { sha256, media_type, size_bytes, pixels_sha256, size: pixels.size })
     }
 
-    /// The bytes of this hash and what they are, checked against the hash; `None` for an unknown one.
+    /// The bytes of this hash and their media type, checked against the hash; `None` for an unknown one.
     ///
     /// # Errors
     /// [`StoreError::Damaged`] when the file is not what was stored.
-    pub async fn stimulus(&self, sha256: &str) -> Result<Option<(StimulusInfo, Vec<u8>)>, StoreError> {
+    pub async fn stimulus(&self, sha256: &str) -> Result<Option<(String, Vec<u8>)>, StoreError> {
         if !is_sha256(sha256) {
             return Ok(None);
         }
-        let row = sqlx::query("SELECT media_type, size_bytes FROM stimuli WHERE sha256 = $1")
+        let row = sqlx::query_scalar("SELECT media_type FROM stimuli WHERE sha256 = $1")
             .bind(sha256)
             .fetch_optional(&self.reader)
             .await?;
-        let Some(row) = row else { return Ok(None) };
-        let info = StimulusInfo {
-            sha256: sha256.to_owned(),
-            media_type: row.try_get("media_type")?,
-            size_bytes: row.try_get::<i64, _>("size_bytes")? as u64,
-        };
+        let Some(media_type) = row else { return Ok(None) };
         let (files, wanted) = (self.files.clone(), sha256.to_owned());
-        Ok(blocking(move || files.get(&wanted)).await?.map(|bytes| (info, bytes)))
+        Ok(blocking(move || files.get(&wanted)).await?.map(|bytes| (media_type, bytes)))
+    }
+
+    /// What is known of a stored stimulus; `None` for an unknown one.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn stimulus_info(&self, sha256: &str) -> Result<Option<StimulusInfo>, StoreError> {
+        let row = sqlx::query("SELECT * FROM stimuli WHERE sha256 = $1 AND pixels_sha256 IS NOT NULL")
+            .bind(sha256)
+            .fetch_optional(&self.reader)
+            .await?;
+        row.map(|row| {
+            Ok(StimulusInfo {
+                sha256: sha256.to_owned(),
+                media_type: row.try_get("media_type")?,
+                size_bytes: row.try_get::<i64, _>("size_bytes")? as u64,
+                pixels_sha256: row.try_get("pixels_sha256")?,
+                size: [row.try_get("width")?, row.try_get("height")?],
+            })
+        })
+        .transpose()
     }
 
     /// The finished job with this key.
@@ -115,49 +158,31 @@ impl Store {
         Ok(())
     }
 
-    /// Notes which job a pair of a study shows under a condition.
-    pub async fn put_study_stimulus(
+    /// What a version of a study shows, by item and condition.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn version_stimuli(
         &self,
         study_id: &str,
-        config_hash: &str,
-        pair_id: &str,
-        condition: &str,
-        job_key: &str,
-    ) -> Result<(), StoreError> {
-        sqlx::query(
-            "INSERT INTO study_stimuli (study_id, config_hash, pair_id, condition, job_key) VALUES ($1, $2, $3, $4, $5)
-             ON CONFLICT (study_id, config_hash, pair_id, condition) DO UPDATE SET job_key = excluded.job_key",
-        )
-        .bind(study_id)
-        .bind(config_hash)
-        .bind(pair_id)
-        .bind(condition)
-        .bind(job_key)
-        .execute(&self.writer)
-        .await?;
-        Ok(())
-    }
-
-    /// What the pairs of a study's version show, by pair and condition.
-    pub async fn study_stimuli(
-        &self,
-        study_id: &str,
-        config_hash: &str,
+        version: &str,
     ) -> Result<Vec<StudyStimulus>, StoreError> {
         let rows = sqlx::query(
-            "SELECT pair_id, condition, sha256, provenance FROM study_stimuli JOIN renders USING (job_key)
-             WHERE study_id = $1 AND config_hash = $2 ORDER BY pair_id, condition",
+            "SELECT v.*, s.width, s.height FROM version_stimuli v JOIN stimuli s USING (sha256)
+             WHERE study_id = $1 AND version = $2 ORDER BY item_id, condition",
         )
         .bind(study_id)
-        .bind(config_hash)
+        .bind(version)
         .fetch_all(&self.reader)
         .await?;
         rows.iter()
             .map(|row| {
                 Ok(StudyStimulus {
-                    pair: row.try_get("pair_id")?,
+                    item: row.try_get("item_id")?,
                     condition: row.try_get("condition")?,
                     sha256: row.try_get("sha256")?,
+                    pixels_sha256: row.try_get("pixels_sha256")?,
+                    size: [row.try_get("width")?, row.try_get("height")?],
                     provenance: read_json(row.try_get("provenance")?)?,
                 })
             })
@@ -165,12 +190,12 @@ impl Store {
     }
 }
 
-fn read_json(text: String) -> Result<Value, StoreError> {
+pub(crate) fn read_json(text: String) -> Result<Value, StoreError> {
     serde_json::from_str(&text).map_err(|e| StoreError::corrupt("provenance", e))
 }
 
 /// File work off the async threads.
-async fn blocking<T: Send + 'static>(
+pub(crate) async fn blocking<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, StoreError> + Send + 'static,
 ) -> Result<T, StoreError> {
     match tokio::task::spawn_blocking(work).await {

@@ -1,0 +1,146 @@
+//! What a stimulus shows, whatever its file is like: a hash over decoded pixels, so that a file may be packed anew without a new version.
+
+use crate::stimuli::ANIMATION;
+use image::{DynamicImage, ImageDecoder, ImageReader};
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use std::io::Cursor;
+
+/// Size and pixels of a stimulus.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Pixels {
+    /// [width, height].
+    pub(crate) size: [u32; 2],
+    /// SHA-256 (hex) over "kelir-pixels/1", line feed, "WIDTH HEIGHT FRAMES FPS LOOP", line feed, and each frame's RGBA8 rows; a still has one
+    /// frame, 0 fps and loop false.
+    pub(crate) sha256: String,
+}
+
+/// An animation's manifest, as far as it says what is shown.
+#[derive(Deserialize)]
+struct Manifest {
+    fps: f64,
+    #[serde(rename = "loop")]
+    repeat: bool,
+    frames: Vec<String>,
+}
+
+/// The pixels of stored bytes; `frame` gives the bytes that a manifest names by hash.
+///
+/// # Errors
+/// Why they cannot be decoded, as a sentence's end: "is no PNG or JPEG: …".
+pub(crate) fn of(
+    media_type: &str,
+    bytes: &[u8],
+    frame: &dyn Fn(&str) -> Option<Vec<u8>>,
+) -> Result<Pixels, String> {
+    if media_type != ANIMATION {
+        let image = decode(bytes)?;
+        let size = [image.width(), image.height()];
+        return Ok(Pixels { size, sha256: hash(size, "1 0 false", [Ok(image)])? });
+    }
+    let manifest: Manifest =
+        serde_json::from_slice(bytes).map_err(|error| format!("is no manifest of an animation: {error}"))?;
+    let missing = |name: &str| format!("names a frame that is not stored: {name}");
+    let decoded = |name: &String| decode(&frame(name).ok_or_else(|| missing(name))?);
+    let first = decoded(manifest.frames.first().ok_or("names no frames")?)?;
+    let size = [first.width(), first.height()];
+    let fps = kelir_study::versions::canonical(&manifest.fps)?;
+    let header = format!("{} {fps} {}", manifest.frames.len(), manifest.repeat);
+    Ok(Pixels { size, sha256: hash(size, &header, manifest.frames.iter().map(decoded))? })
+}
+
+fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
+    let wrong = |error: image::ImageError| format!("is no PNG or JPEG: {error}");
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+    let mut decoder =
+        reader.map_err(|error| format!("cannot be read: {error}"))?.into_decoder().map_err(wrong)?;
+    let orientation = decoder.orientation().map_err(wrong)?;
+    let mut image = DynamicImage::from_decoder(decoder).map_err(wrong)?;
+    // As a browser shows it.
+    image.apply_orientation(orientation);
+    Ok(image)
+}
+
+fn hash(
+    size: [u32; 2],
+    header: &str,
+    frames: impl IntoIterator<Item = Result<DynamicImage, String>>,
+) -> Result<String, String> {
+    let [width, height] = size;
+    let mut hasher = Sha256::new();
+    hasher.update(format!("kelir-pixels/1\n{width} {height} {header}\n"));
+    for frame in frames {
+        let frame = frame?;
+        if [frame.width(), frame.height()] != size {
+            return Err(format!("has frames of different sizes: {} × {}", frame.width(), frame.height()));
+        }
+        hasher.update(frame.into_rgba8().as_raw());
+    }
+    Ok(hasher.finalize().iter().map(|b| format!("{b:02x}")).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+    use image::{ExtendedColorType, ImageEncoder};
+
+    fn png(grey: &[u8], width: u32, compression: CompressionType, filter: FilterType) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let height = grey.len() as u32 / width;
+        let encoder = PngEncoder::new_with_quality(&mut bytes, compression, filter);
+        encoder.write_image(grey, width, height, ExtendedColorType::L8).unwrap();
+        bytes
+    }
+
+    fn still(bytes: &[u8]) -> Result<Pixels, String> {
+        of("image/png", bytes, &|_| None)
+    }
+
+    #[test]
+    fn a_file_packed_anew_shows_the_same_and_another_pixel_does_not() {
+        let grey: Vec<u8> = (0..=255).cycle().take(64 * 9).collect();
+        let (fast, best) = (CompressionType::Fast, CompressionType::Best);
+        let one = png(&grey, 64, fast, FilterType::NoFilter);
+        let two = png(&grey, 64, best, FilterType::Paeth);
+        assert_ne!(one, two);
+        assert_eq!(still(&one), still(&two));
+        let mut other = grey.clone();
+        other[100] ^= 1;
+        assert_ne!(still(&png(&other, 64, fast, FilterType::NoFilter)), still(&one));
+        assert_ne!(
+            still(&png(&grey, 32, fast, FilterType::NoFilter)),
+            still(&one),
+            "the same bytes in other rows"
+        );
+    }
+
+    #[test]
+    fn the_hash_is_that_of_the_contract() {
+        // printf 'kelir-pixels/1\n2 1 1 0 false\n\x07\x07\x07\xff\x09\x09\x09\xff' | sha256sum
+        let found = still(&png(&[7, 9], 2, CompressionType::Fast, FilterType::NoFilter)).unwrap();
+        assert_eq!(found.size, [2, 1]);
+        assert_eq!(found.sha256, "405f086e0299c024cdd5112790c59cc3b13faac59f4de07e222c3f9b5eefc1ce");
+        // … 2 1 3 12.5 true\n, then the frame of 7 and 9, that of 9 and 7, and the first again.
+        let frames = [[7, 9], [9, 7]].map(|grey| png(&grey, 2, CompressionType::Fast, FilterType::NoFilter));
+        let manifest = br#"{"fps":12.5,"loop":true,"width":2,"height":1,"frames":["a","b","a"]}"#;
+        let frame = |name: &str| frames.get(usize::from(name != "a")).cloned();
+        let found = of(ANIMATION, manifest, &frame).unwrap();
+        assert_eq!(found.sha256, "124d7f1e090dd8ef9b232dad69c6b28ca7532ac218e0484d62dcf9748fe1056e");
+        let slower = String::from_utf8_lossy(manifest).replace("12.5", "12");
+        assert_ne!(of(ANIMATION, slower.as_bytes(), &frame).unwrap().sha256, found.sha256);
+    }
+
+    #[test]
+    fn what_cannot_be_decoded_is_said() {
+        assert!(still(b"GIF89a").unwrap_err().contains("no PNG or JPEG"));
+        let whole = png(&[0; 4096], 64, CompressionType::Fast, FilterType::NoFilter);
+        assert!(still(&whole[..whole.len() / 2]).is_err());
+        assert!(of(ANIMATION, b"{}", &|_| None).unwrap_err().contains("manifest"));
+        let named = br#"{"fps":1,"loop":true,"frames":["x"]}"#;
+        assert!(of(ANIMATION, named, &|_| None).unwrap_err().contains("not stored: x"));
+    }
+}

@@ -1,0 +1,109 @@
+//! Plans: what each trial of a session shows, appended as it is decided.
+
+use crate::answers::{NextTrials, ShownStimulus};
+use crate::error::StoreError;
+use crate::sqlite::Store;
+use kelir_study::trials::Role;
+use serde::{Deserialize, Serialize};
+use sqlx::Row;
+use sqlx::sqlite::SqliteConnection;
+use std::collections::BTreeMap;
+
+/// The beginning of a slot's plan with the stimuli filled in.
+#[derive(Clone, Debug)]
+pub struct PlannedSession {
+    /// Seed of the plan.
+    pub seed: String,
+    /// The first trials, and whether answers will decide others.
+    pub next: NextTrials,
+}
+
+/// The hashes of a stimulus.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StimulusHashes {
+    /// Hash of the file.
+    pub sha256: String,
+    /// Hash of its decoded pixels.
+    pub pixels_sha256: String,
+}
+
+/// One trial of a session: what is shown in which role.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlannedTrial {
+    /// The trial as the study plans it.
+    #[serde(flatten)]
+    pub trial: kelir_study::Trial,
+    /// The stimulus of each of its roles.
+    pub stimuli: BTreeMap<Role, StimulusHashes>,
+}
+
+impl PlannedTrial {
+    /// What is shown, as a row of answers says it.
+    ///
+    /// # Errors
+    /// A role has no stimulus.
+    pub fn shown(&self) -> Result<BTreeMap<Role, ShownStimulus>, StoreError> {
+        let of = |(role, placed): (&Role, &kelir_study::trials::Placed<'_>)| {
+            let hashes = self.stimuli.get(role).ok_or_else(|| {
+                let message =
+                    format!("item {} has no stimulus of condition {}", placed.item, placed.condition);
+                StoreError::corrupt("trial", message)
+            })?;
+            let shown = ShownStimulus {
+                item: placed.item.to_string(),
+                condition: placed.condition.to_string(),
+                sha256: hashes.sha256.clone(),
+                pixels_sha256: hashes.pixels_sha256.clone(),
+            };
+            Ok((*role, shown))
+        };
+        self.trial.shown.iter().map(of).collect()
+    }
+}
+
+impl Store {
+    /// The trials of a session that are decided so far, in order.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn trials(&self, session_id: &str) -> Result<Vec<PlannedTrial>, StoreError> {
+        decided(&mut *self.reader.acquire().await?, session_id).await
+    }
+}
+
+pub(crate) async fn decided(
+    connection: &mut SqliteConnection,
+    session_id: &str,
+) -> Result<Vec<PlannedTrial>, StoreError> {
+    let rows = sqlx::query("SELECT trial FROM session_trials WHERE session_id = $1 ORDER BY trial_index")
+        .bind(session_id)
+        .fetch_all(connection)
+        .await?;
+    rows.iter()
+        .map(|row| serde_json::from_str(row.try_get("trial")?).map_err(|e| StoreError::corrupt("trial", e)))
+        .collect()
+}
+
+/// Appends trials, decided now from the study's answers up to `after_seq`.
+pub(crate) async fn insert_trials(
+    writer: &mut SqliteConnection,
+    session_id: &str,
+    trials: &[PlannedTrial],
+    now: &str,
+    after_seq: i64,
+) -> Result<(), StoreError> {
+    for planned in trials {
+        let trial = serde_json::to_string(planned).map_err(|e| StoreError::corrupt("trial", e))?;
+        sqlx::query(
+            "INSERT INTO session_trials (session_id, trial_index, trial, decided_at, after_seq) VALUES ($1, $2, $3, $4, $5)",
+        )
+        .bind(session_id)
+        .bind(planned.trial.trial_index)
+        .bind(trial)
+        .bind(now)
+        .bind(after_seq)
+        .execute(&mut *writer)
+        .await?;
+    }
+    Ok(())
+}
