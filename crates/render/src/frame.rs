@@ -103,7 +103,7 @@ pub trait Renderer: Send {
         let _ = meter;
     }
 
-    /// The kind of backend, for a job's key: `cpu`, where every machine draws the same, or `gpu:ADAPTER/DRIVER`, because drivers differ.
+    /// The kind of backend, for a job's key: `cpu`, or `gpu:ADAPTER/DRIVER`, because drivers differ.
     fn class(&self) -> String {
         "cpu".into()
     }
