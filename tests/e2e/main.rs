@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod cli;
+mod doors;
 mod film;
 mod invariants;
 mod report;

@@ -6,7 +6,8 @@ use kelir_scene::{Scene, Theatre};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::{Backend, RenderError, Renderer, Technique, View, exposure, renderer};
+use crate::exposure::Rule;
+use crate::{Backend, RenderError, Renderer, Technique, View, renderer};
 
 pub mod kernels;
 mod savings;
@@ -89,7 +90,7 @@ pub fn frames(
     cases: &[Case],
 ) -> Result<FramesReport, RenderError> {
     let mut drawing = renderer(technique, backend)?;
-    let white = exposure::of_scene(scene, view, false);
+    let white = Rule::Still.white(scene, view, None);
     let still = scene.still();
     let mut report = FramesReport {
         size: view.size,

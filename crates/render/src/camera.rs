@@ -88,15 +88,19 @@ impl Camera {
 
     /// The photograph of `frame` as a file.
     pub fn photograph(&self, frame: &Frame, white: f64) -> Result<Photograph, RenderError> {
-        let codes = self.expose(frame, white)?;
+        self.file(&self.expose(frame, white)?, frame.size)
+    }
+
+    /// Codes that were exposed, `width * height` of them, as a file.
+    pub fn file(&self, codes: &[u32], size: [usize; 2]) -> Result<Photograph, RenderError> {
         let Some(quality) = self.jpeg_quality else {
-            return Ok(Photograph { media_type: "image/png", bytes: png(&codes, frame.size)? });
+            return Ok(Photograph { media_type: "image/png", bytes: png(codes, size)? });
         };
         let rgb: Vec<u8> = codes.iter().flat_map(|p| [*p as u8, (p >> 8) as u8, (p >> 16) as u8]).collect();
         let mut bytes = Vec::new();
         let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, quality);
         encoder
-            .encode(&rgb, frame.size[0] as u32, frame.size[1] as u32, image::ExtendedColorType::Rgb8)
+            .encode(&rgb, size[0] as u32, size[1] as u32, image::ExtendedColorType::Rgb8)
             .map_err(|e| RenderError::Encode(format!("jpeg: {e}")))?;
         Ok(Photograph { media_type: "image/jpeg", bytes })
     }

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use crate::exposure::Rule;
 use crate::{Frame, RenderError};
 
 /// Every f32 belongs to one of these bins by its exponent and seven bits of mantissa; codes are at least 0.8 % apart, so
@@ -100,10 +101,12 @@ pub fn png(display: &[u32], size: [usize; 2]) -> Result<Vec<u8>, RenderError> {
 }
 
 /// What an EXR file says about itself.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Attributes {
     /// The radiance that a display should show as white.
     pub white: f64,
+    /// What that is the brightest of.
+    pub exposure: Rule,
     /// Technique name and knobs.
     pub technique: String,
     /// Hash of the scene.
@@ -111,7 +114,7 @@ pub struct Attributes {
 }
 
 /// An OpenEXR file of f32 channels: R, G, B in linear radiance and the frame's layers; rows top to bottom, ZIP
-/// compressed. Attributes: `white` (f32), `technique`, `sceneSha256` and `kelirVersion`.
+/// compressed. Attributes: `white` (f32), `exposure`, `technique`, `sceneSha256` and `kelirVersion`.
 pub fn exr(frame: &Frame, attributes: &Attributes) -> Result<Vec<u8>, RenderError> {
     use exr::prelude::*;
     let channel = |name: &str, values: &[f32]| AnyChannel::new(name, FlatSamples::F32(values.to_vec()));
@@ -121,6 +124,7 @@ pub fn exr(frame: &Frame, attributes: &Attributes) -> Result<Vec<u8>, RenderErro
     let mut own = LayerAttributes::default();
     let text = |s: &str| AttributeValue::Text(Text::new_or_none(s).unwrap_or_else(|| Text::from("?")));
     own.other.insert(Text::from("white"), AttributeValue::F32(attributes.white as f32));
+    own.other.insert(Text::from("exposure"), text(attributes.exposure.name()));
     own.other.insert(Text::from("technique"), text(&attributes.technique));
     own.other.insert(Text::from("sceneSha256"), text(&attributes.scene_sha256));
     own.other.insert(Text::from("kelirVersion"), text(env!("CARGO_PKG_VERSION")));
@@ -205,7 +209,12 @@ mod tests {
     #[test]
     fn exr_keeps_every_bit() {
         use exr::prelude::*;
-        let attributes = Attributes { white: 0.25, technique: "pa".into(), scene_sha256: "ab".into() };
+        let attributes = Attributes {
+            white: 0.25,
+            exposure: Rule::Still,
+            technique: "pa".into(),
+            scene_sha256: "ab".into(),
+        };
         let bytes = exr(&frame(), &attributes).unwrap();
         let image = read()
             .no_deep_data()

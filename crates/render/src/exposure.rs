@@ -2,6 +2,7 @@
 
 use kelir_scene::{Ambient, Exposure, Scene, Theatre};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::{View, albedo, irradiance::UnitRows};
 
@@ -45,21 +46,47 @@ pub fn white<'a>(theatres: impl IntoIterator<Item = &'a Theatre>, view: &View) -
     if brightest > 0.0 { brightest } else { 1.0 }
 }
 
-/// White for a scene: as written, or, for all frames of its timeline (`moving`), one value for the whole of it.
-pub fn of_scene(scene: &Scene, view: &View, moving: bool) -> f64 {
-    // Exposure does not see puppets: only the lamp's path matters, and each of its places once.
-    let still = Theatre { planes: Vec::new(), ..scene.still() };
-    let Some(timeline) = scene.timeline().filter(|_| moving) else { return white([&still], view) };
-    let mut theatres: Vec<Theatre> = Vec::new();
-    for frame in 0..timeline.frame_count() {
-        let position_m = scene.lamp_at(timeline.frame_time_s(frame));
-        if theatres.iter().all(|t| t.lamp.position_m != position_m) {
-            let mut theatre = still.clone();
-            theatre.lamp.position_m = position_m;
-            theatres.push(theatre);
+/// What white is the brightest of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Rule {
+    /// The still itself: the scene as written, or at its instant.
+    Still,
+    /// Every frame of the scene's timeline: one white for all of them, and for a still that stands beside them. Without a timeline, as
+    /// [`Rule::Still`].
+    Timeline,
+}
+
+impl Rule {
+    /// The name in files, options and messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Still => "still",
+            Self::Timeline => "timeline",
         }
     }
-    white(&theatres, view)
+
+    /// White for a scene: as the scene says, or by this rule; `time_s` is a still's instant, absent for the scene as written.
+    pub fn white(self, scene: &Scene, view: &View, time_s: Option<f64>) -> f64 {
+        // Exposure does not see puppets: only the lamp's path matters, and each of its places once.
+        let mut still = Theatre { planes: Vec::new(), ..scene.still() };
+        let Some(timeline) = scene.timeline().filter(|_| self == Self::Timeline) else {
+            if let Some(time_s) = time_s {
+                still.lamp.position_m = scene.lamp_at(time_s);
+            }
+            return white([&still], view);
+        };
+        let mut theatres: Vec<Theatre> = Vec::new();
+        for frame in 0..timeline.frame_count() {
+            let position_m = scene.lamp_at(timeline.frame_time_s(frame));
+            if theatres.iter().all(|t| t.lamp.position_m != position_m) {
+                let mut theatre = still.clone();
+                theatre.lamp.position_m = position_m;
+                theatres.push(theatre);
+            }
+        }
+        white(&theatres, view)
+    }
 }
 
 #[cfg(test)]

@@ -103,6 +103,11 @@ pub trait Renderer: Send {
         let _ = meter;
     }
 
+    /// The kind of backend, for a job's key: `cpu`, or `gpu:ADAPTER/DRIVER`, because drivers differ.
+    fn class(&self) -> String {
+        "cpu".into()
+    }
+
     /// What drew it, for provenance: "native 2 threads avx2" or the GPU adapter's name and driver.
     fn adapter(&self) -> String;
 }

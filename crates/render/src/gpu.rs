@@ -54,9 +54,11 @@ fn may_have_gpu() -> bool {
 }
 
 fn describe(info: &wgpu::AdapterInfo) -> String {
-    let kind = format!("{:?}", info.device_type);
-    let driver = format!("{} {}", info.driver, info.driver_info);
-    format!("{} ({kind}, {})", info.name, driver.trim())
+    format!("{} ({:?}, {})", info.name, info.device_type, driver(info))
+}
+
+fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info).trim().to_owned()
 }
 
 /// The device that `backend` asks for; `None` is the native backend.
@@ -118,6 +120,11 @@ impl Gpu {
     /// "name (type, driver)".
     pub fn adapter(&self) -> String {
         describe(&self.info)
+    }
+
+    /// `gpu:ADAPTER/DRIVER`, for a job's key.
+    pub fn class(&self) -> String {
+        format!("gpu:{}/{}", self.info.name, driver(&self.info))
     }
 
     /// Whether a CPU imitates the GPU (lavapipe).

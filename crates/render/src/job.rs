@@ -1,30 +1,35 @@
 //! The door to the renderer: a job with a scene, a technique and an output in, a stimulus out.
 //!
-//! What a participant sees is bytes with a hash. The same job gives the same bytes each time on the same backend.
+//! What a participant sees is bytes with a hash. The same job gives the same bytes each time on the same backend, and has a [key](Job::key)
+//! by which they are found again. The command line draws through the same [`Drawing`], so that it shows what a study shows.
+
+mod drawing;
+mod key;
+mod measure;
 
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 
-use kelir_scene::{Ambient, Scene, Theatre};
-use kelir_vision::errors::{Errors, errors};
-use serde::{Serialize, Serializer, ser::SerializeStruct};
+use kelir_scene::Scene;
+use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use crate::camera::Camera;
-use crate::irradiance::UnitRows;
-use crate::{
-    Backend, Frame, Pixel, RenderError, Renderer, Stats, Technique, View, albedo, encode, exposure, penumbra,
-    renderer,
-};
+use crate::exposure::Rule;
+use crate::{Backend, Pixel, RenderError, Technique, View, albedo};
+
+pub use drawing::{Drawing, Drawn};
+use measure::measure;
+pub use measure::{Measured, StandardError};
+pub(crate) use measure::{Spread, brightest, irradiance, named};
 
 /// Media type of an animation's manifest.
 pub const ANIMATION: &str = "application/vnd.kelir.animation+json";
 
-/// What is asked for.
-#[derive(Debug)]
-pub struct Job {
+/// What is asked for. `scene` may be left unread (a [`Job<String>`] of its path, say): checks and keys need no more than its hash.
+#[derive(Clone, Debug)]
+pub struct Job<S = Scene> {
     /// What is drawn.
-    pub scene: Scene,
+    pub scene: S,
     /// What draws it.
     pub technique: Technique,
     /// Size and pixel rule.
@@ -33,20 +38,71 @@ pub struct Job {
     pub backend: Backend,
     /// A camera between the image and its viewer.
     pub camera: Option<Camera>,
+    /// The instant of the timeline that a still shows, seconds; absent: the scene as written.
+    pub time_s: Option<f64>,
+    /// What is shown as white; [`Output::exposure`] unless something else is wanted.
+    pub exposure: Rule,
     /// One image or all frames.
     pub output: Output,
     /// What the image is measured against; its error goes into the provenance.
     pub reference: Option<Technique>,
 }
 
+impl<S> Job<S> {
+    /// The same job of another scene, such as one that has been read by now.
+    pub fn with_scene<T>(self, scene: T) -> Job<T> {
+        let Self { scene: _, technique, view, backend, camera, time_s, exposure, output, reference } = self;
+        Job { scene, technique, view, backend, camera, time_s, exposure, output, reference }
+    }
+
+    /// Errors: a knob, a camera's setting or an instant out of its range; an animation of one instant.
+    pub fn check(&self) -> Result<(), RenderError> {
+        self.technique.check()?;
+        self.reference.as_ref().map_or(Ok(()), Technique::check)?;
+        self.camera.map_or(Ok(()), |camera| camera.check())?;
+        match self.time_s {
+            Some(time_s) if !time_s.is_finite() => {
+                Err(RenderError::View(format!("time = {time_s}: a number of seconds")))
+            }
+            Some(time_s) if self.output == Output::Animation => Err(RenderError::View(format!(
+                "time = {time_s}: a still has an instant, an animation has all"
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Job {
+    /// How many frames are asked for. Errors: an animation of a scene without a timeline.
+    fn frames(&self) -> Result<usize, RenderError> {
+        match (self.output, self.scene.timeline()) {
+            (Output::Still, _) => Ok(1),
+            (Output::Animation, Some(timeline)) => Ok(timeline.frame_count()),
+            (Output::Animation, None) => Err(RenderError::View(
+                "timeline is missing: only a scene with a [timeline] can be animated".into(),
+            )),
+        }
+    }
+}
+
 /// Which images of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Output {
-    /// The scene as written.
+    /// One image.
     Still,
     /// Every frame of its timeline.
     Animation,
+}
+
+impl Output {
+    /// The exposure of each where nothing else is asked for: a still for itself, an animation for its whole timeline.
+    pub fn exposure(self) -> Rule {
+        match self {
+            Self::Still => Rule::Still,
+            Self::Animation => Rule::Timeline,
+        }
+    }
 }
 
 /// How far a job is.
@@ -101,12 +157,20 @@ pub struct Provenance {
     /// Technique and knobs, seed among them where it has one.
     #[serde(flatten)]
     pub technique: Technique,
+    /// The technique's revision.
+    pub revision: u32,
+    /// The revision of what techniques share.
+    pub shared_revision: u32,
     /// kelir's version.
     pub version: &'static str,
-    /// Where it was drawn.
-    pub backend: Backend,
+    /// Where it was drawn, as in the job's key: `cpu` or `gpu:ADAPTER/DRIVER`.
+    pub backend: String,
     /// What drew it.
     pub adapter: String,
+    /// The instant shown, seconds; absent: the scene as written, or all frames.
+    pub time_s: Option<f64>,
+    /// What white is the brightest of.
+    pub exposure: Rule,
     /// The radiance shown as white.
     pub white: f64,
     /// Pixels [width, height].
@@ -123,85 +187,6 @@ pub struct Provenance {
     pub standard_error: Option<StandardError>,
     /// What was done and skipped, summed over frames.
     pub counts: BTreeMap<String, u64>,
-}
-
-/// Error of the irradiance against a reference, in units of the brightest unshadowed point.
-#[derive(Clone, Debug, Serialize)]
-pub struct Measured {
-    /// What it was measured against.
-    pub reference: Technique,
-    /// Frames that were compared.
-    pub frames: Vec<usize>,
-    /// Over all pixels and channels.
-    #[serde(serialize_with = "named")]
-    pub all: Errors,
-    /// Over pixels in penumbra alone.
-    #[serde(serialize_with = "named")]
-    pub penumbra: Errors,
-    /// The reference's own standard error, root mean square over the same penumbra pixels: what no measured error can go below.
-    pub floor: Option<f64>,
-}
-
-/// Monte Carlo's own standard error of the irradiance, in units of the brightest unshadowed point.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct StandardError {
-    /// Root mean square over the sampled pixels and channels of all frames; elsewhere it is exactly 0.
-    pub rms_sampled: f64,
-    /// The largest.
-    pub max: f64,
-}
-
-/// Sums of the standard errors in a frame's SE layers.
-#[derive(Default)]
-pub(crate) struct Spread {
-    squares: f64,
-    count: usize,
-    max: f64,
-    /// Whether there were SE layers at all.
-    known: bool,
-}
-
-impl Spread {
-    /// Adds the pixels that `counted` takes, as irradiance.
-    pub(crate) fn add(
-        &mut self,
-        frame: &Frame,
-        albedo: &albedo::PixelAlbedo,
-        counted: impl Fn(usize, f64) -> bool,
-    ) {
-        for (c, name) in ["SE.R", "SE.G", "SE.B"].iter().enumerate() {
-            let Some(layer) = frame.layers.iter().find(|l| l.name == *name) else { continue };
-            self.known = true;
-            for (k, se) in layer.values.iter().enumerate() {
-                let se = f64::from(*se) * PI / f64::from(albedo.at(c, k));
-                if se.is_finite() && counted(k, se) {
-                    self.squares += se * se;
-                    self.count += 1;
-                    self.max = self.max.max(se);
-                }
-            }
-        }
-    }
-
-    pub(crate) fn root_mean_square(&self) -> f64 {
-        (self.squares / self.count.max(1) as f64).sqrt()
-    }
-
-    fn known(self, full_scale: f64) -> Option<StandardError> {
-        let error =
-            StandardError { rms_sampled: self.root_mean_square() / full_scale, max: self.max / full_scale };
-        self.known.then_some(error)
-    }
-}
-
-pub(crate) fn named<S: Serializer>(errors: &Errors, serializer: S) -> Result<S::Ok, S::Error> {
-    let mut s = serializer.serialize_struct("Errors", 5)?;
-    s.serialize_field("count", &errors.count)?;
-    s.serialize_field("bias", &errors.bias)?;
-    s.serialize_field("rmse", &errors.rmse)?;
-    s.serialize_field("p999", &errors.p999)?;
-    s.serialize_field("max", &errors.max)?;
-    s.end()
 }
 
 /// An animation's manifest, as it is written.
@@ -224,18 +209,8 @@ fn hex(bytes: &[u8]) -> String {
 /// Errors: a scene that the technique can't draw, an impossible view, knobs out of range, no adapter; an animation of a scene
 /// without a timeline.
 pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus, RenderError> {
-    if let Some(camera) = &job.camera {
-        camera.check()?;
-    }
-    let frames = match (job.output, job.scene.timeline()) {
-        (Output::Still, _) => 1,
-        (Output::Animation, Some(timeline)) => timeline.frame_count(),
-        (Output::Animation, None) => {
-            return Err(RenderError::View(
-                "timeline is missing: only a scene with a [timeline] can be animated".into(),
-            ));
-        }
-    };
+    job.check()?;
+    let frames = job.frames()?;
     let compared = match (&job.reference, job.output) {
         (None, _) => Vec::new(),
         (_, Output::Still) => vec![0],
@@ -245,61 +220,63 @@ pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus
     };
     let total = frames + compared.len() + 1;
     progress(Progress { done: 0, total, what: "exposure" });
-    let white = exposure::of_scene(&job.scene, &job.view, job.output == Output::Animation);
-    let mut drawing = renderer(&job.technique, job.backend)?;
+    let (technique, reference, view) = (job.technique.clone(), job.reference.clone(), job.view);
+    let mut drawing = Drawing::open(job)?;
     let mut blobs: Vec<Blob> = Vec::new();
     let mut shown: Vec<String> = Vec::with_capacity(frames);
     let mut counts = BTreeMap::new();
-    let mut last: Option<Theatre> = None;
     let (mut spread, mut full_scale) = (Spread::default(), 0f64);
     for frame in 0..frames {
-        progress(Progress { done: frame + 1, total, what: job.technique.name() });
-        let theatre = theatre(job, frame);
-        if last.as_ref().is_some_and(|last| last.same_staging(&theatre))
-            && let Some(repeated) = shown.last().cloned()
-        {
-            shown.push(repeated);
+        progress(Progress { done: frame + 1, total, what: technique.name() });
+        let Drawn { repeated, stats, linear } = drawing.frame(frame)?;
+        if repeated {
+            shown.extend(shown.last().cloned());
             *counts.entry("frames_repeated".into()).or_insert(0) += 1;
             continue;
         }
-        let (blob, stats) = draw(job, drawing.as_mut(), &theatre, white, &mut spread)?;
-        if spread.known {
-            full_scale = full_scale.max(brightest(&theatre, &job.view));
+        if let (Some(linear), Some(theatre)) = (&linear, drawing.shown()) {
+            spread.add(linear, &albedo::on_grid(&theatre.screen, &view), |_, se| se > 0.0);
+            full_scale = full_scale.max(brightest(theatre, &view));
         }
         for (name, count) in stats.counts {
             *counts.entry(name).or_insert(0) += count;
         }
+        let blob = drawing.file()?;
         shown.push(blob.sha256.clone());
         if blobs.iter().all(|b| b.sha256 != blob.sha256) {
             blobs.push(blob);
         }
-        last = Some(theatre);
     }
-    let error = match job.reference.clone() {
+    let error = match &reference {
         None => None,
-        Some(reference) => Some(measure(job, drawing.as_mut(), &reference, compared, &mut |k| {
+        Some(reference) => Some(measure(&mut drawing, reference, compared, &mut |k| {
             progress(Progress { done: frames + 1 + k, total, what: reference.name() });
         })?),
     };
+    let (backend, adapter, white) = (drawing.class(), drawing.adapter(), drawing.white());
     let provenance = Provenance {
         scene_sha256: job.scene.sha256().into(),
-        technique: job.technique.clone(),
+        revision: technique.revision(),
+        shared_revision: crate::REVISION,
+        technique,
         version: env!("CARGO_PKG_VERSION"),
-        backend: job.backend,
-        adapter: drawing.adapter(),
+        backend,
+        adapter,
+        time_s: job.time_s,
+        exposure: job.exposure,
         white,
-        size: job.view.size,
-        pixel: job.view.pixel,
+        size: view.size,
+        pixel: view.pixel,
         output: job.output,
         camera: job.camera,
         error,
-        standard_error: spread.known(if full_scale > 0.0 { full_scale } else { 1.0 }),
+        standard_error: spread.in_units_of(if full_scale > 0.0 { full_scale } else { 1.0 }),
         counts,
     };
     progress(Progress { done: total, total, what: "done" });
     let stimulus = match (job.output, job.scene.timeline()) {
         (Output::Animation, Some(timeline)) => {
-            let [width, height] = job.view.size;
+            let [width, height] = view.size;
             let manifest =
                 Manifest { fps: timeline.fps, repeat: timeline.repeat, width, height, frames: &shown };
             let bytes =
@@ -310,119 +287,6 @@ pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus
     };
     let (Blob { media_type, bytes, sha256 }, attachments) = stimulus;
     Ok(Stimulus { media_type, bytes, sha256, attachments, provenance })
-}
-
-fn theatre(job: &mut Job, frame: usize) -> Theatre {
-    match (job.output, job.scene.timeline()) {
-        (Output::Animation, Some(timeline)) => {
-            let time_s = timeline.frame_time_s(frame);
-            job.scene.theatre_at(time_s)
-        }
-        _ => job.scene.still(),
-    }
-}
-
-fn draw(
-    job: &Job,
-    drawing: &mut dyn Renderer,
-    theatre: &Theatre,
-    white: f64,
-    spread: &mut Spread,
-) -> Result<(Blob, Stats), RenderError> {
-    let view = &job.view;
-    crate::pa::check_view(theatre, view)?;
-    // Display codes alone would not say how sure Monte Carlo is of them.
-    if job.camera.is_some() || matches!(job.technique, Technique::Mc(_)) {
-        let frame = drawing.radiance(theatre, view)?;
-        spread.add(&frame, &albedo::on_grid(&theatre.screen, view), |_, se| se > 0.0);
-        let blob = match &job.camera {
-            Some(camera) => {
-                let photograph = camera.photograph(&frame, white)?;
-                Blob::new(photograph.media_type, photograph.bytes)
-            }
-            None => Blob::new("image/png", encode::png(&encode::display(&frame, white), view.size)?),
-        };
-        return Ok((blob, frame.stats));
-    }
-    let mut codes = vec![0; view.size[0] * view.size[1]];
-    let stats = drawing.display(theatre, view, white, &mut codes)?;
-    Ok((Blob::new("image/png", encode::png(&codes, view.size)?), stats))
-}
-
-/// Irradiance at the back of the screen and at its front the albedo: E = π L / albedo, NaN where the screen is black.
-pub(crate) fn irradiance(frame: &Frame, albedo: &albedo::PixelAlbedo) -> Vec<f64> {
-    let channel = |c: usize| {
-        frame.radiance[c]
-            .iter()
-            .enumerate()
-            .map(move |(k, l)| f64::from(*l) * PI / f64::from(albedo.at(c, k)))
-    };
-    (0..3).flat_map(channel).collect()
-}
-
-fn measure(
-    job: &mut Job,
-    drawing: &mut dyn Renderer,
-    reference: &Technique,
-    frames: Vec<usize>,
-    progress: &mut dyn FnMut(usize),
-) -> Result<Measured, RenderError> {
-    let mut truth = renderer(reference, job.backend)?;
-    let (mut ours, mut theirs, mut penumbra) = (Vec::new(), Vec::new(), Vec::new());
-    let mut variance = Spread::default();
-    let mut full_scale = 0f64;
-    for (k, frame) in frames.iter().enumerate() {
-        progress(k);
-        let theatre = theatre(job, *frame);
-        full_scale = full_scale.max(brightest(&theatre, &job.view));
-        let albedo = albedo::on_grid(&theatre.screen, &job.view);
-        let (a, b) = (drawing.radiance(&theatre, &job.view)?, truth.radiance(&theatre, &job.view)?);
-        let marked = penumbra::mask(&theatre, &job.view);
-        let seen: Vec<(f64, f64)> =
-            irradiance(&a, &albedo).into_iter().zip(irradiance(&b, &albedo)).collect();
-        for (i, (a, b)) in seen.iter().enumerate().filter(|(_, (a, b))| a.is_finite() && b.is_finite()) {
-            ours.push(*a);
-            theirs.push(*b);
-            penumbra.push(marked[i % marked.len()]);
-        }
-        variance.add(&b, &albedo, |k, _| marked[k]);
-    }
-    let failed = |e: kelir_vision::errors::ErrorsError| RenderError::Encode(format!("measured error: {e}"));
-    let full_scale = if full_scale > 0.0 { full_scale } else { 1.0 };
-    Ok(Measured {
-        reference: reference.clone(),
-        frames,
-        all: errors(&ours, &theirs, None, full_scale).map_err(failed)?,
-        penumbra: errors(&ours, &theirs, Some(&penumbra), full_scale).map_err(failed)?,
-        floor: variance.known.then(|| variance.root_mean_square() / full_scale),
-    })
-}
-
-/// The brightest unshadowed irradiance over pixels and channels.
-pub(crate) fn brightest(theatre: &Theatre, view: &View) -> f64 {
-    let lamp = &theatre.lamp;
-    let units: Vec<_> = lamp
-        .emitters
-        .iter()
-        .map(|e| (e.radiance, UnitRows::new(&e.shape, lamp.position_m, &theatre.screen, view.size)))
-        .collect();
-    let dome = match theatre.ambient {
-        Ambient::Dome { radiance } => radiance.map(|l| l * PI),
-        _ => [0.0; 3],
-    };
-    let mut unit = vec![0.0; view.size[0]];
-    let mut most = 0f64;
-    for j in 0..view.size[1] {
-        let mut sums = vec![dome; view.size[0]];
-        for (radiance, rows) in &units {
-            rows.row(j, &mut unit);
-            for (sum, unit) in sums.iter_mut().zip(&unit) {
-                (0..3).for_each(|c| sum[c] += radiance[c] * unit);
-            }
-        }
-        most = sums.iter().flatten().copied().fold(most, f64::max);
-    }
-    most
 }
 
 #[cfg(test)]

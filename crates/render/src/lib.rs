@@ -17,6 +17,7 @@ pub mod film;
 pub mod frame;
 pub mod gpu;
 pub mod irradiance;
+mod jcs;
 pub mod job;
 pub mod numerics;
 pub mod penumbra;
@@ -27,6 +28,10 @@ pub mod techniques;
 pub use exposure::white;
 pub use frame::*;
 pub use techniques::{Backend, Technique, mc, oracle, pa, pcss, points, renderer};
+
+/// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte whatever the technique:
+/// staging and masks of a scene, exposure, albedo, irradiance, camera, sRGB, PNG, JPEG, an animation's manifest.
+pub const REVISION: u32 = 1;
 
 /// Why nothing was drawn.
 #[derive(Debug, thiserror::Error)]

@@ -9,18 +9,19 @@ use kelir_study::{Condition, Kind, Problem};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Makes stimuli with kelir's renderer, in this process.
+/// Makes stimuli with kelir's renderer, in this process and on its native code: GPU drivers differ, and one study may be drawn on several
+/// machines.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct RenderMaker {
-    /// Where it draws.
-    pub backend: Backend,
-}
+pub struct RenderMaker {}
 
 /// A condition's technique with its knobs; what is wrong with them.
 pub(crate) fn technique(name: &str, knobs: &BTreeMap<String, Value>) -> Result<Technique, String> {
     let mut object: serde_json::Map<String, Value> = knobs.clone().into_iter().collect();
     object.insert("technique".to_owned(), Value::from(name));
-    serde_json::from_value(Value::Object(object)).map_err(|error| error.to_string())
+    let technique: Technique =
+        serde_json::from_value(Value::Object(object)).map_err(|error| error.to_string())?;
+    technique.check().map_err(|error| error.to_string())?;
+    Ok(technique)
 }
 
 /// The camera with these settings; what is wrong with them.
@@ -31,20 +32,10 @@ pub(crate) fn camera(settings: &BTreeMap<String, Value>) -> Result<Camera, Strin
 }
 
 impl Maker for RenderMaker {
-    /// All that decides the bytes but for the machine: what was made on one is as good on another.
     fn identity(&self, task: &Task<'_>, library: &Library) -> Result<String, String> {
-        let plan = Plan::of(task)?;
-        let facts = library.scene_facts(&plan.scene).map_err(lines)?;
-        let identity = json!({
-            "kelir": env!("CARGO_PKG_VERSION"),
-            "scene": facts.sha256,
-            "technique": plan.technique,
-            "view": plan.view,
-            "camera": plan.camera,
-            "output": plan.output,
-            "reference": plan.reference,
-        });
-        Ok(identity.to_string())
+        let job = job(task)?;
+        let facts = library.scene_facts(&job.scene).map_err(lines)?;
+        job.preimage_for(&facts.sha256).map_err(|error| error.to_string())
     }
 
     fn make(
@@ -53,10 +44,12 @@ impl Maker for RenderMaker {
         library: &Library,
         progress: &mut dyn FnMut(f64, &str),
     ) -> Result<Made, String> {
-        let Plan { scene, technique, view, camera, output, reference } = Plan::of(task)?;
-        let scene = library.scene(&scene).map_err(lines)?;
-        let mut job = Job { scene, technique, view, backend: self.backend, camera, output, reference };
-        let stimulus = run(&mut job, &mut |step| {
+        let job = job(task)?;
+        let scene = library.scene(&job.scene).map_err(lines)?;
+        if scene.sha256() != library.scene_facts(&job.scene).map_err(lines)?.sha256 {
+            return Err(format!("{}: was changed after the study was checked; start again", job.scene));
+        }
+        let stimulus = run(&mut job.with_scene(scene), &mut |step| {
             progress(step.done as f64 / step.total.max(1) as f64, step.what);
         })
         .map_err(|error| error.to_string())?;
@@ -72,35 +65,28 @@ impl Maker for RenderMaker {
     }
 }
 
-/// A job before its scene is read.
-struct Plan {
-    scene: String,
-    technique: Technique,
-    view: View,
-    camera: Option<Camera>,
-    output: Output,
-    reference: Option<Technique>,
-}
-
-impl Plan {
-    fn of(task: &Task<'_>) -> Result<Plan, String> {
-        let Condition::Rendered { technique: name, knobs, camera: settings } = task.condition else {
-            return Err("is a picture file and is not drawn".to_owned());
-        };
-        let technique = technique(name, knobs)?;
-        let [width, height] = task.study.size;
-        Ok(Plan {
-            scene: task.scene_file().ok_or("has no scene")?,
-            reference: reference(task, &technique),
-            technique,
-            view: View { size: [width as usize, height as usize], pixel: Pixel::Area, skip: true },
-            camera: settings.as_ref().map(camera).transpose()?,
-            output: match task.block.kind {
-                Kind::Still => Output::Still,
-                Kind::Animation => Output::Animation,
-            },
-        })
-    }
+/// What a task asks the renderer for; its scene as a path in the library, not read.
+fn job(task: &Task<'_>) -> Result<Job<String>, String> {
+    let Condition::Rendered { technique: name, knobs, camera: settings } = task.condition else {
+        return Err("is a picture file and is not drawn".to_owned());
+    };
+    let technique = technique(name, knobs)?;
+    let [width, height] = task.study.size;
+    let output = match task.block.kind {
+        Kind::Still => Output::Still,
+        Kind::Animation => Output::Animation,
+    };
+    Ok(Job {
+        scene: task.scene_file().ok_or("has no scene")?,
+        reference: reference(task, &technique),
+        technique,
+        view: View { size: [width as usize, height as usize], pixel: Pixel::Area, skip: true },
+        backend: Backend::Cpu,
+        camera: settings.as_ref().map(camera).transpose()?,
+        time_s: None,
+        exposure: output.exposure(),
+        output,
+    })
 }
 
 fn lines(problems: Vec<Problem>) -> String {
@@ -122,3 +108,6 @@ fn reference(task: &Task<'_>, technique: &Technique) -> Option<Technique> {
     let spp = |technique: &Technique| if let Technique::Mc(knobs) = technique { knobs.spp } else { 0 };
     conditions.max_by_key(spp).or_else(|| self::technique("mc", &BTreeMap::new()).ok())
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::Result;
+use kelir_render::exposure::Rule;
 use kelir_render::film::{Film, Format, Run};
-use kelir_render::{Stats, encode, exposure, file, renderer};
+use kelir_render::job::{self, Output};
+use kelir_render::{Stats, file};
 use serde::Serialize;
 use serde_json::json;
 
-use super::drawing::{Drawing, StatsFormat, render_error};
+use super::drawing::{Drawing, ExposureName, StatsFormat, render_error};
 use crate::output::print;
 use crate::{bad_input, progress};
 
@@ -18,6 +20,9 @@ use crate::{bad_input, progress};
 pub struct Args {
     #[command(flatten)]
     drawing: Drawing,
+    /// What is shown as white.
+    #[arg(long, value_enum, default_value = "timeline")]
+    exposure: ExposureName,
     /// Folder to write (frame-0000.png, frame-0001.png, … and manifest.json, for studies), or FILE.apng (lossless), or FILE.mp4 (H.264, for sharing).
     #[arg(short, long)]
     output: PathBuf,
@@ -47,19 +52,17 @@ impl Target {
         }
     }
 
-    /// Adds a frame; `repeated` says that it equals the one before.
-    fn frame(&mut self, output: &Path, codes: &[u32], size: [usize; 2], repeated: bool) -> Result<()> {
+    /// Adds the frame that was drawn last; `repeated` says that it equals the one before.
+    fn frame(&mut self, output: &Path, drawing: &job::Drawing<'_>, repeated: bool) -> Result<()> {
         match self {
-            Self::Film(film) => film.frame(codes).map_err(render_error)?,
+            Self::Film(film) => film.frame(drawing.codes()).map_err(render_error)?,
             Self::Folder { names } => {
                 let name = match names.last() {
                     Some(last) if repeated => last.clone(),
                     _ => {
                         let name = format!("frame-{:04}.png", names.len());
-                        file::write_atomic(
-                            &output.join(&name),
-                            &encode::png(codes, size).map_err(render_error)?,
-                        )?;
+                        let file = drawing.file().map_err(render_error)?;
+                        file::write_atomic(&output.join(&name), &file.bytes)?;
                         name
                     }
                 };
@@ -72,35 +75,25 @@ impl Target {
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<()> {
-    let mut scene = args.drawing.load()?;
-    let Some(timeline) = scene.timeline() else {
+    let mut job = args.drawing.job(Output::Animation, args.exposure, None)?;
+    let Some(timeline) = job.scene.timeline() else {
         return Err(bad_input(format!("{}: timeline: an animation needs one", args.drawing.scene.display())));
     };
-    let view = args.drawing.view(&scene.still());
-    let run =
-        Run { size: view.size, fps: timeline.fps, frames: timeline.frame_count(), repeat: timeline.repeat };
-    let times: Vec<f64> = (0..run.frames).map(|frame| timeline.frame_time_s(frame)).collect();
+    let (size, exposure) = (job.view.size, job.exposure);
+    let run = Run { size, fps: timeline.fps, frames: timeline.frame_count(), repeat: timeline.repeat };
     let mut target = Target::new(&args.output, run)?;
-    let mut renderer = renderer(&args.drawing.technique(), args.drawing.backend).map_err(render_error)?;
-    // One exposure for the whole timeline.
-    let white = exposure::of_scene(&scene, &view, true);
 
     let begun = Instant::now();
+    let mut drawing = job::Drawing::open(&mut job).map_err(render_error)?;
+    let white = drawing.white();
     let bar = progress::bar(run.frames as u64, "frames");
-    let mut codes = vec![0; view.size[0] * view.size[1]];
     let mut stats: Vec<Stats> = Vec::new();
-    let mut repeated = 0;
-    let mut last: Option<kelir_scene::Theatre> = None;
-    for time_s in times {
-        let theatre = scene.theatre_at(time_s);
-        let same = last.as_ref().is_some_and(|last| last.same_staging(&theatre));
-        if same {
-            repeated += 1;
-        } else {
-            stats.push(renderer.display(&theatre, &view, white, &mut codes).map_err(render_error)?);
+    for frame in 0..run.frames {
+        let drawn = drawing.frame(frame).map_err(render_error)?;
+        target.frame(&args.output, &drawing, drawn.repeated)?;
+        if !drawn.repeated {
+            stats.push(drawn.stats);
         }
-        target.frame(&args.output, &codes, view.size, same)?;
-        last = Some(theatre);
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -108,8 +101,8 @@ pub fn run(args: Args) -> Result<()> {
         Target::Film(film) => file::write_atomic(&args.output, &film.finish().map_err(render_error)?)?,
         Target::Folder { names } => {
             let manifest = json!({
-                "fps": run.fps, "loop": run.repeat, "width": view.size[0], "height": view.size[1],
-                "white": white, "frames": names,
+                "fps": run.fps, "loop": run.repeat, "width": size[0], "height": size[1],
+                "exposure": exposure, "white": white, "frames": names,
             });
             // The manifest comes last: a folder that has one is whole.
             file::write_atomic(
@@ -120,9 +113,11 @@ pub fn run(args: Args) -> Result<()> {
     }
     if let Some(StatsFormat::Json) = args.drawing.stats {
         let report = Report {
-            adapter: renderer.adapter(),
+            adapter: drawing.adapter(),
+            exposure,
+            white,
             total_ms: begun.elapsed().as_secs_f64() * 1e3,
-            frames_repeated: repeated,
+            frames_repeated: run.frames - stats.len(),
             frames: &stats,
         };
         print(&serde_json::to_string_pretty(&report)?)?;
@@ -134,6 +129,8 @@ pub fn run(args: Args) -> Result<()> {
 #[derive(Serialize)]
 struct Report<'a> {
     adapter: String,
+    exposure: Rule,
+    white: f64,
     total_ms: f64,
     /// Frames equal to the one before, not drawn again.
     frames_repeated: usize,

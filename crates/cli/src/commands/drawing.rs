@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
+use kelir_render::exposure::Rule;
+use kelir_render::job::{Job, Output};
 use kelir_render::{Backend, Pixel, RenderError, Technique, View, mc, oracle, pa, pcss, points};
 use kelir_scene::{Scene, Theatre};
 
@@ -126,7 +128,41 @@ pub enum PixelName {
     Centre,
 }
 
+/// Names of the exposure rules on the command line.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum ExposureName {
+    /// The brightest pixel without puppets, as the scene is written or at its instant.
+    Still,
+    /// The brightest over every frame of the timeline: one white for all of them.
+    Timeline,
+}
+
+impl From<ExposureName> for Rule {
+    fn from(name: ExposureName) -> Self {
+        match name {
+            ExposureName::Still => Self::Still,
+            ExposureName::Timeline => Self::Timeline,
+        }
+    }
+}
+
 impl Drawing {
+    /// What is asked of the renderer, as a study would ask it.
+    pub fn job(&self, output: Output, exposure: ExposureName, time_s: Option<f64>) -> Result<Job> {
+        let scene = self.load()?;
+        Ok(Job {
+            technique: self.technique(),
+            view: self.view(&scene.still()),
+            scene,
+            backend: self.backend,
+            camera: None,
+            time_s,
+            exposure: exposure.into(),
+            output,
+            reference: None,
+        })
+    }
+
     /// The technique with its knobs.
     pub fn technique(&self) -> Technique {
         match self.technique {

@@ -5,10 +5,12 @@ use std::time::Instant;
 
 use anyhow::Result;
 use kelir_render::encode::{self, Attributes};
-use kelir_render::{Frame, Meter, Stats, exposure, file, renderer};
+use kelir_render::exposure::Rule;
+use kelir_render::job::{self, Drawn, Output};
+use kelir_render::{Frame, Meter, RenderError, Stats, file};
 use serde::Serialize;
 
-use super::drawing::{Drawing, StatsFormat, render_error};
+use super::drawing::{Drawing, ExposureName, StatsFormat, render_error};
 use crate::bad_input;
 use crate::output::print;
 use crate::progress;
@@ -21,6 +23,9 @@ pub struct Args {
     /// Instant of the timeline, in seconds; by default the scene as written, its timeline not applied.
     #[arg(long)]
     time: Option<f64>,
+    /// What is shown as white.
+    #[arg(long, value_enum, default_value = "still")]
+    exposure: ExposureName,
     /// Image to write: .png (display-encoded sRGB) or .exr (linear radiance, visibilities, standard errors).
     #[arg(short, long)]
     output: PathBuf,
@@ -43,39 +48,27 @@ pub fn run(args: Args) -> Result<()> {
             )));
         }
     };
-    let mut scene = args.drawing.load()?;
-    let scene_sha256 = scene.sha256().to_owned();
-    let theatre = match args.time {
-        Some(time_s) if time_s.is_finite() => scene.theatre_at(time_s),
-        Some(time_s) => return Err(bad_input(format!("time = {time_s}: a number of seconds"))),
-        None => scene.still(),
-    };
-    let view = args.drawing.view(&theatre);
-    let technique = args.drawing.technique();
-    let mut renderer = renderer(&technique, args.drawing.backend).map_err(render_error)?;
+    let mut job = args.drawing.job(Output::Still, args.exposure, args.time)?;
+    let (technique, size, exposure) = (job.technique.clone(), job.view.size, job.exposure);
+    let scene_sha256 = job.scene.sha256().to_owned();
 
     let begun = Instant::now();
-    // The same exposure for a still and for every frame of the scene's timeline.
-    let white = exposure::of_scene(&scene, &view, true).max(exposure::white([&theatre], &view));
+    let mut drawing = job::Drawing::open(&mut job).map_err(render_error)?;
+    let white = drawing.white();
+    let attributes = Attributes {
+        white,
+        exposure,
+        technique: serde_json::to_string(&technique)?,
+        scene_sha256: scene_sha256.clone(),
+    };
     let meter = Meter::default();
-    renderer.watch(&meter);
-    let frame = progress::watch(&meter, technique.name(), || renderer.radiance(&theatre, &view))
-        .map_err(render_error)?;
-    let bytes = match container {
-        Container::Png => encode::png(&encode::display(&frame, white), frame.size),
-        Container::Exr => {
-            let attributes = Attributes {
-                white,
-                technique: serde_json::to_string(&technique)?,
-                scene_sha256: scene_sha256.clone(),
-            };
-            encode::exr(&frame, &attributes)
-        }
-    }
-    .map_err(render_error)?;
+    drawing.watch(&meter);
+    let (bytes, stats, linear) =
+        progress::watch(&meter, technique.name(), || draw(&mut drawing, &container, &attributes))
+            .map_err(render_error)?;
     file::write_atomic(&args.output, &bytes)?;
 
-    let standard_error = StandardError::of(&frame, white);
+    let standard_error = linear.and_then(|frame| StandardError::of(&frame, white));
     if let Some(error) = &standard_error {
         eprintln!(
             "standard error of a pixel, in units of white: mean {:.2e} where sampled, at most {:.2e}",
@@ -85,17 +78,36 @@ pub fn run(args: Args) -> Result<()> {
     if let Some(StatsFormat::Json) = args.drawing.stats {
         let report = Report {
             technique: technique.name(),
-            adapter: renderer.adapter(),
-            size: frame.size,
+            adapter: drawing.adapter(),
+            size,
+            exposure,
             white,
             scene_sha256,
             total_ms: begun.elapsed().as_secs_f64() * 1e3,
-            stats: &frame.stats,
+            stats: &stats,
             standard_error,
         };
         print(&serde_json::to_string_pretty(&report)?)?;
     }
     Ok(())
+}
+
+/// The file's bytes, what was done, and the image in linear light where it was drawn in that.
+fn draw(
+    drawing: &mut job::Drawing<'_>,
+    container: &Container,
+    attributes: &Attributes,
+) -> Result<(Vec<u8>, Stats, Option<Frame>), RenderError> {
+    match container {
+        Container::Png => {
+            let Drawn { stats, linear, .. } = drawing.frame(0)?;
+            Ok((drawing.file()?.bytes, stats, linear))
+        }
+        Container::Exr => {
+            let frame = drawing.radiance(0)?;
+            Ok((encode::exr(&frame, attributes)?, frame.stats.clone(), Some(frame)))
+        }
+    }
 }
 
 /// What `--stats json` prints.
@@ -104,6 +116,7 @@ struct Report<'a> {
     technique: &'a str,
     adapter: String,
     size: [usize; 2],
+    exposure: Rule,
     white: f64,
     scene_sha256: String,
     total_ms: f64,

@@ -22,8 +22,9 @@ pub use cases::{Case, SEED, all};
 pub use crops::{Crop, Model};
 pub use report::{CaseReport, Measured, OnCrops, Oracle, Outcome, Reference, Report, Times};
 
+use crate::exposure::Rule;
 use crate::job::{Spread, brightest, irradiance};
-use crate::{Backend, Frame, RenderError, Technique, View, albedo, encode, exposure, mc, penumbra, renderer};
+use crate::{Backend, Frame, RenderError, Technique, View, albedo, encode, mc, penumbra, renderer};
 use crops::Truth;
 use images::Seen;
 
@@ -144,7 +145,7 @@ pub fn measure(
     };
 
     step(1, "oracle");
-    let white = exposure::of_scene(scene, view, false);
+    let white = Rule::Still.white(scene, view, None);
     let chosen = crops::choose(&penumbra, view.size, options.crops);
     let truth = match Truth::draw(theatre, view, &albedo, chosen, options.tolerance) {
         Ok(truth) => Ok(truth),

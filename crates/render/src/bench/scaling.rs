@@ -6,7 +6,8 @@ use kelir_scene::{Mask, Plane, Scene, Texels, Theatre};
 use serde::Serialize;
 
 use super::{quantile, slid, timed};
-use crate::{Backend, RenderError, Technique, View, exposure, pa, renderer};
+use crate::exposure::Rule;
+use crate::{Backend, RenderError, Technique, View, pa, renderer};
 
 /// One line of the table: a sliding puppet with one thing changed.
 #[derive(Clone, Debug, Serialize)]
@@ -30,7 +31,7 @@ pub fn scaling(
     frames: usize,
 ) -> Result<Vec<Scaled>, RenderError> {
     let still = scene.still();
-    let white = exposure::of_scene(scene, view, false);
+    let white = Rule::Still.white(scene, view, None);
     let one = |theatre: &Theatre, technique: &Technique, view: &View| {
         let mut drawing = renderer(technique, backend)?;
         let phase = |k: usize| k as f64 / frames.max(1) as f64;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use kelir_scene::Assets;
 
 use super::*;
-use crate::{mc, oracle, pa};
+use crate::{encode, exposure, mc, oracle, pa};
 
 struct Files(BTreeMap<String, Vec<u8>>);
 
@@ -57,6 +57,8 @@ texels = 128
         view: View { size: [96, 54], pixel: Pixel::Area, skip: true },
         backend: Backend::Cpu,
         camera: None,
+        time_s: None,
+        exposure: output.exposure(),
         output,
         reference: None,
     }
@@ -91,6 +93,11 @@ fn the_same_job_gives_the_same_bytes_and_says_where_they_came_from() {
     let json = serde_json::to_value(&one.provenance).unwrap();
     assert_eq!(json["technique"], "pa");
     assert_eq!(json["scene_sha256"], first.scene.sha256());
+    assert_eq!(
+        (&json["revision"], &json["shared_revision"]),
+        (&pa::REVISION.into(), &crate::REVISION.into())
+    );
+    assert_eq!((&json["backend"], &json["exposure"]), (&"cpu".into(), &"still".into()));
     assert_eq!(json["error"]["reference"]["technique"], "oracle");
     // PA draws E⁰ · Vgeo: against the oracle's the error is rounding. The floor is unknown: no random numbers.
     let max = json["error"]["all"]["max"].as_f64().unwrap();
@@ -136,6 +143,88 @@ fn an_animation_is_a_manifest_and_its_frames_equal_ones_shared() {
     );
     let again = run(&mut job(SLIDE, pa(), Output::Animation), &mut |_| ()).unwrap();
     assert_eq!(stimulus.bytes, again.bytes);
+}
+
+const LAMP: &str = r#"
+[timeline]
+fps = 10
+seconds = 0.4
+loop = false
+[[timeline.tracks]]
+target = "lamp.position_m"
+keys = [ { t = 0.0, value = [0.0, 0.0, -1.4] }, { t = 0.3, value = [0.0, 0.0, -1.0] } ]
+"#;
+
+#[test]
+fn each_rule_of_exposure_by_its_definition() {
+    let mut job = job(LAMP, pa(), Output::Still);
+    let view = job.view;
+    let at: Vec<f64> =
+        (0..4).map(|k| exposure::white([&job.scene.theatre_at(0.1 * f64::from(k))], &view)).collect();
+    let white = |rule: Rule, time_s| rule.white(&job.scene, &view, time_s);
+    assert_eq!(white(Rule::Still, None), exposure::white([&job.scene.still()], &view));
+    assert_eq!(white(Rule::Still, Some(0.2)), at[2]);
+    for time_s in [None, Some(0.2)] {
+        assert_eq!(white(Rule::Timeline, time_s), at[3], "the lamp is nearest at the end");
+    }
+    assert!(white(Rule::Still, None) < at[0] && at[0] < at[2] && at[2] < at[3], "{at:?}");
+    job = self::job("", pa(), Output::Still);
+    assert_eq!(
+        Rule::Timeline.white(&job.scene, &view, None),
+        Rule::Still.white(&job.scene, &view, Some(0.3))
+    );
+}
+
+#[test]
+fn a_still_of_an_instant_is_the_animations_frame_when_exposed_like_it() {
+    let animation = run(&mut job(LAMP, pa(), Output::Animation), &mut |_| ()).unwrap();
+    assert_eq!(animation.provenance.exposure, Rule::Timeline);
+    let still = |exposure, time_s| {
+        let job = job(LAMP, pa(), Output::Still);
+        run(&mut Job { time_s, exposure, ..job }, &mut |_| ()).unwrap()
+    };
+    let frame = still(Rule::Timeline, Some(0.2));
+    assert_eq!(frame.sha256, animation.attachments[2].sha256);
+    assert_eq!((frame.provenance.white, frame.provenance.time_s), (animation.provenance.white, Some(0.2)));
+    // Negative controls: another instant, another rule.
+    assert_ne!(still(Rule::Timeline, Some(0.1)).sha256, frame.sha256);
+    assert_ne!(still(Rule::Timeline, None).sha256, frame.sha256);
+    let own = still(Rule::Still, Some(0.2));
+    assert!(own.sha256 != frame.sha256 && own.provenance.white < frame.provenance.white);
+}
+
+/// What is drawn on a device says so, in its provenance as in its key.
+#[test]
+fn a_device_has_a_class_of_its_own() {
+    for technique in [pa(), Technique::Points(crate::points::Knobs { lights: 4, subpixels: 1 })] {
+        let mut on_gpu = Job { backend: Backend::Gpu, ..job("", technique, Output::Still) };
+        let backend = run(&mut on_gpu, &mut |_| ()).unwrap().provenance.backend;
+        assert!(backend.starts_with("gpu:") && backend[4..].contains('/'), "{backend}");
+        let preimage = on_gpu.preimage_for(on_gpu.scene.sha256()).unwrap();
+        assert!(preimage.contains(&serde_json::to_string(&backend).unwrap()), "{preimage}");
+        assert_ne!(on_gpu.key().unwrap(), Job { backend: Backend::Cpu, ..on_gpu }.key().unwrap());
+    }
+}
+
+/// Files of codes that every machine computes alike: where an encoder writes other bytes, [`crate::REVISION`] must be raised.
+#[test]
+fn encoders_write_the_bytes_of_this_revision() {
+    assert_eq!(crate::REVISION, 1, "after raising it, write the hashes below anew");
+    let codes: Vec<u32> =
+        (0..64 * 36u32).map(|k| encode::pack(k * k % 251, k / 9 % 256, k * 7 % 256)).collect();
+    let hash = |bytes: Vec<u8>| Blob::new("", bytes).sha256;
+    let camera = |jpeg_quality| Camera { jpeg_quality, ..Camera::default() };
+    let png = "801523e36ff46bbf3e9b98c23ff3d9e2600399178b253d8b27dcedfc04643ed0";
+    let jpeg = "0d3c7c8f418884d65aab52a5d6af0c5a3b3b516c032934c0914b019780dd0969";
+    let files = [
+        (encode::png(&codes, [64, 36]).unwrap(), png),
+        (camera(None).file(&codes, [64, 36]).unwrap().bytes, png),
+        (camera(Some(90)).file(&codes, [64, 36]).unwrap().bytes, jpeg),
+    ];
+    for (bytes, expected) in files {
+        assert_eq!(hash(bytes), expected, "an encoder changed: raise kelir_render::REVISION");
+    }
+    assert_ne!(hash(camera(Some(89)).file(&codes, [64, 36]).unwrap().bytes), jpeg);
 }
 
 #[test]

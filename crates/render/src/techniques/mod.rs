@@ -1,4 +1,4 @@
-//! The techniques: adding one is a new folder here, one variant of [`Technique`] and one line of [`renderer`].
+//! The techniques: adding one is a new folder here, one variant of [`Technique`] and one line in each `match` on it.
 
 pub mod mc;
 pub mod oracle;
@@ -35,6 +35,28 @@ impl Technique {
             Self::Points(_) => "points",
             Self::Pcss(_) => "pcss",
             Self::Oracle(_) => "oracle",
+        }
+    }
+
+    /// The revision that stands in a job's key.
+    pub fn revision(&self) -> u32 {
+        match self {
+            Self::Pa(_) => pa::REVISION,
+            Self::Mc(_) => mc::REVISION,
+            Self::Points(_) => points::REVISION,
+            Self::Pcss(_) => pcss::REVISION,
+            Self::Oracle(_) => oracle::REVISION,
+        }
+    }
+
+    /// Errors: a knob out of its range.
+    pub fn check(&self) -> Result<(), RenderError> {
+        match self {
+            Self::Pa(knobs) => knobs.check(),
+            Self::Mc(knobs) => knobs.check(),
+            Self::Points(knobs) => knobs.check(),
+            Self::Pcss(knobs) => knobs.check(),
+            Self::Oracle(knobs) => knobs.check(),
         }
     }
 }

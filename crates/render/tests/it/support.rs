@@ -11,6 +11,7 @@ use kelir_scene::{
 /// A scene that ships: its name, the theatre as written, and one later instant of its timeline.
 pub struct Shipped {
     pub name: String,
+    pub sha256: String,
     pub still: Theatre,
     pub later: Option<Theatre>,
 }
@@ -28,6 +29,7 @@ pub fn shipped() -> &'static [Shipped] {
             let seconds = scene.timeline().map(|t| t.seconds);
             Shipped {
                 name: path.file_stem().unwrap().to_str().unwrap().to_owned(),
+                sha256: scene.sha256().to_owned(),
                 still: scene.still(),
                 later: seconds.map(|s| scene.theatre_at(0.4 * s)),
             }

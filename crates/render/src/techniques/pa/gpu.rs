@@ -356,6 +356,10 @@ impl Renderer for OnGpu {
         self.draw(theatre, view, Sink::Display { white, out })
     }
 
+    fn class(&self) -> String {
+        self.passes.gpu.class()
+    }
+
     fn adapter(&self) -> String {
         self.passes.gpu.adapter()
     }

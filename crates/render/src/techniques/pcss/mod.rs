@@ -34,6 +34,10 @@ use crate::{Backend, Frame, Layer, Meter, RenderError, Renderer, Stats, View, al
 use map::{Beam, Map};
 use native::{Row, Shader};
 
+/// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
+/// draws, in its own files or in what it borrows from another. What was made before is then made anew.
+pub const REVISION: u32 = 1;
+
 /// What can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -57,7 +61,8 @@ impl Default for Knobs {
 }
 
 impl Knobs {
-    fn check(&self) -> Result<(), RenderError> {
+    /// Errors: a knob out of its range.
+    pub fn check(&self) -> Result<(), RenderError> {
         let refuse = |text| Err(RenderError::Knob(text));
         for (name, samples) in
             [("blocker_samples", self.blocker_samples), ("filter_samples", self.filter_samples)]
@@ -285,6 +290,10 @@ impl Renderer for Pcss {
 
     fn watch(&mut self, meter: &Meter) {
         self.meter = meter.clone();
+    }
+
+    fn class(&self) -> String {
+        self.gpu.as_ref().map_or("cpu".into(), |on| on.gpu.class())
     }
 
     fn adapter(&self) -> String {

@@ -1,0 +1,123 @@
+//! A job under way: the one path from a scene to codes and to files, for studies and for the command line.
+
+use kelir_scene::Theatre;
+
+use super::{Blob, Job, Output};
+use crate::{Frame, Meter, RenderError, Renderer, Stats, Technique, encode, pa, renderer};
+
+/// A job being drawn, frame by frame; it keeps what it built between frames.
+pub struct Drawing<'j> {
+    pub(super) job: &'j mut Job,
+    renderer: Box<dyn Renderer>,
+    white: f64,
+    codes: Vec<u32>,
+    /// What `codes` show.
+    last: Option<Theatre>,
+}
+
+/// A frame that was drawn.
+#[derive(Debug, Default)]
+pub struct Drawn {
+    /// It shows what the one drawn before it shows, whose codes stand; nothing else was done.
+    pub repeated: bool,
+    /// What was done and skipped.
+    pub stats: Stats,
+    /// The image in linear light that the codes were made from: for Monte Carlo and for what a camera takes.
+    pub linear: Option<Frame>,
+}
+
+impl<'j> Drawing<'j> {
+    /// Opens the renderer and sets the exposure. Errors: as [`Job::check`]; an animation of a scene without a timeline, an impossible
+    /// view, no adapter.
+    pub fn open(job: &'j mut Job) -> Result<Self, RenderError> {
+        job.check()?;
+        job.frames()?;
+        let renderer = renderer(&job.technique, job.backend)?;
+        pa::check_view(&job.scene.still(), &job.view)?;
+        let white = job.exposure.white(&job.scene, &job.view, job.time_s);
+        let codes = vec![0; job.view.size[0] * job.view.size[1]];
+        Ok(Self { job, renderer, white, codes, last: None })
+    }
+
+    /// The radiance shown as white.
+    pub fn white(&self) -> f64 {
+        self.white
+    }
+
+    /// What draws it, as [`Renderer::adapter`] has it.
+    pub fn adapter(&self) -> String {
+        self.renderer.adapter()
+    }
+
+    /// `cpu` or `gpu:ADAPTER/DRIVER`, as in the job's key.
+    pub fn class(&self) -> String {
+        self.renderer.class()
+    }
+
+    /// Counts the rows of what is drawn from now on.
+    pub fn watch(&mut self, meter: &Meter) {
+        self.renderer.watch(meter);
+    }
+
+    /// What frame `index` shows.
+    pub(super) fn theatre(&mut self, index: usize) -> Theatre {
+        let Job { scene, output, time_s, .. } = &mut *self.job;
+        match (output, scene.timeline(), time_s) {
+            (Output::Animation, Some(timeline), _) => {
+                let time_s = timeline.frame_time_s(index);
+                scene.theatre_at(time_s)
+            }
+            (_, _, Some(time_s)) => scene.theatre_at(*time_s),
+            _ => scene.still(),
+        }
+    }
+
+    /// Draws frame `index`, 0 for a still. Errors: what the technique can't draw.
+    pub fn frame(&mut self, index: usize) -> Result<Drawn, RenderError> {
+        let theatre = self.theatre(index);
+        if self.last.as_ref().is_some_and(|last| last.same_staging(&theatre)) {
+            return Ok(Drawn { repeated: true, ..Drawn::default() });
+        }
+        self.last = None;
+        let (view, camera) = (self.job.view, self.job.camera);
+        // Display codes alone would not say how sure Monte Carlo is of them.
+        let drawn = if camera.is_some() || matches!(self.job.technique, Technique::Mc(_)) {
+            let mut frame = self.renderer.radiance(&theatre, &view)?;
+            self.codes = match camera {
+                Some(camera) => camera.expose(&frame, self.white)?,
+                None => encode::display(&frame, self.white),
+            };
+            Drawn { stats: std::mem::take(&mut frame.stats), linear: Some(frame), repeated: false }
+        } else {
+            let stats = self.renderer.display(&theatre, &view, self.white, &mut self.codes)?;
+            Drawn { stats, ..Drawn::default() }
+        };
+        self.last = Some(theatre);
+        Ok(drawn)
+    }
+
+    /// Display codes `0xFFBBGGRR` of the last frame drawn, row-major, first row on top; zeros before the first.
+    pub fn codes(&self) -> &[u32] {
+        &self.codes
+    }
+
+    /// What the last frame drawn shows.
+    pub(super) fn shown(&self) -> Option<&Theatre> {
+        self.last.as_ref()
+    }
+
+    /// The last frame drawn as a file: a PNG, or what its camera writes.
+    pub fn file(&self) -> Result<Blob, RenderError> {
+        let size = self.job.view.size;
+        match &self.job.camera {
+            Some(camera) => camera.file(&self.codes, size).map(|p| Blob::new(p.media_type, p.bytes)),
+            None => Ok(Blob::new("image/png", encode::png(&self.codes, size)?)),
+        }
+    }
+
+    /// Frame `index` in linear light, with all layers; before any camera.
+    pub fn radiance(&mut self, index: usize) -> Result<Frame, RenderError> {
+        let theatre = self.theatre(index);
+        self.renderer.radiance(&theatre, &self.job.view)
+    }
+}

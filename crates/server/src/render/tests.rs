@@ -1,0 +1,148 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::making::tasks;
+use kelir_store::sha256_hex;
+use std::path::Path;
+
+const STUDY: &str = r#"
+title = "t"
+question = "q"
+seed = 3
+size = [64, 36]
+estimated_minutes = 1
+[texts]
+welcome = "w"
+consent = "c"
+instructions = "i"
+debriefing = "d"
+thanks = "t"
+[conditions.pa]
+technique = "pa"
+[conditions.pcss]
+technique = "pcss"
+bias_m = 0
+[[blocks]]
+id = "stills"
+title = "s"
+kind = "still"
+conditions = ["pa", "pcss"]
+target = "pa"
+pairs = [{ id = "a", scene = "../scenes/lamp.toml" }]
+[[blocks]]
+id = "loop"
+title = "l"
+kind = "animation"
+conditions = ["pa", "pcss"]
+target = "pa"
+pairs = [{ id = "b", scene = "../scenes/lamp.toml" }]
+"#;
+
+const SCENE: &str = r#"
+[screen]
+width_m = 1.6
+height_m = 0.9
+albedo = 0.8
+[lamp]
+position_m = [0.0, 0.0, -1.5]
+[[lamp.emitters]]
+name = "bulb"
+shape = "rectangle"
+size_m = [0.1, 0.1]
+radiance = 40.0
+[ambient]
+model = "none"
+[[puppets]]
+image = "square.svg"
+height_m = 0.4
+position_m = [0.0, 0.0, -0.2]
+texels = 64
+[timeline]
+fps = 10
+seconds = 0.2
+loop = true
+[[timeline.tracks]]
+target = "lamp.position_m"
+keys = [{ t = 0.0, value = [0.0, 0.0, -1.5] }, { t = 0.1, value = [0.0, 0.0, -1.0] }]
+"#;
+
+fn write(folder: &Path, path: &str, text: &str) {
+    let path = folder.join(path);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(path, text).unwrap();
+}
+
+fn library(study: &str) -> (tempfile::TempDir, Library) {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "studies/s.toml", study);
+    write(folder.path(), "scenes/lamp.toml", SCENE);
+    let square = r#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"><rect x="2" y="2" width="4" height="4"/></svg>"#;
+    write(folder.path(), "scenes/square.svg", square);
+    let library = Library::new(folder.path());
+    (folder, library)
+}
+
+fn identities(study: &str) -> Vec<String> {
+    let (_folder, library) = library(study);
+    let study = library.study("studies/s.toml").unwrap();
+    let maker = RenderMaker::default();
+    tasks(&study).iter().map(|task| maker.identity(task, &library).unwrap()).collect()
+}
+
+/// Known from the scene's hash alone, the key is that of the job with its scene read.
+#[test]
+fn the_key_is_the_jobs() {
+    let (_folder, library) = library(STUDY);
+    let study = library.study("studies/s.toml").unwrap();
+    let keys: Vec<String> = tasks(&study)
+        .iter()
+        .map(|task| {
+            let key = sha256_hex(RenderMaker::default().identity(task, &library).unwrap().as_bytes());
+            let read = library.scene("scenes/lamp.toml").unwrap();
+            assert_eq!(key, job(task).unwrap().with_scene(read).key().unwrap());
+            key
+        })
+        .collect();
+    assert!((1..4).all(|k| !keys[..k].contains(&keys[k])), "{keys:?}");
+    let texts = identities(STUDY);
+    let rules = ["still", "still", "timeline", "timeline"].map(|rule| format!(r#""exposure":"{rule}""#));
+    for (text, rule) in texts.iter().zip(&rules) {
+        assert!(text.starts_with("kelir-job/2\n{\"backend\":\"cpu\"") && text.contains(rule), "{text}");
+        assert!(text.contains(r#""reference":{"knobs":{"seed":1,"spp":64},"revision":"#), "{text}");
+    }
+}
+
+#[test]
+fn what_a_study_leaves_out_is_its_default() {
+    let written = STUDY
+        .replace("technique = \"pa\"", "technique = \"pa\"\nsplit = 1\nweights = \"area\"")
+        .replace("bias_m = 0", "bias_m = -0.0\nseed = 1");
+    assert_eq!(identities(&written), identities(STUDY));
+    // Negative controls.
+    let other = identities(&STUDY.replace("technique = \"pa\"", "technique = \"pa\"\nsplit = 2"));
+    let same: Vec<bool> = identities(STUDY).iter().zip(&other).map(|(a, b)| a == b).collect();
+    assert_eq!(same, [false, true, false, true]);
+    let sizes = identities(&STUDY.replace("[64, 36]", "[80, 45]"));
+    assert!(sizes.iter().zip(identities(STUDY)).all(|(a, b)| *a != b));
+}
+
+#[test]
+fn a_knob_out_of_its_range_is_found_with_the_study() {
+    let (_folder, library) = library(&STUDY.replace("bias_m = 0", "map_size = 1"));
+    let said = library.study("studies/s.toml").unwrap_err().to_string();
+    assert!(said.contains("conditions.pcss") && said.contains("map_size = 1: from 16 to 8192"), "{said}");
+}
+
+/// A picture of another scene is not kept under this one's key.
+#[test]
+fn a_scene_that_changes_meanwhile_is_refused() {
+    let (folder, library) = library(STUDY);
+    let study = library.study("studies/s.toml").unwrap();
+    let task = tasks(&study).remove(0);
+    let maker = RenderMaker::default();
+    maker.identity(&task, &library).unwrap();
+    assert!(maker.make(&task, &library, &mut |_, _| ()).is_ok());
+    write(folder.path(), "scenes/lamp.toml", &SCENE.replace("radiance = 40.0", "radiance = 41.0"));
+    let said = maker.make(&task, &library, &mut |_, _| ()).unwrap_err();
+    assert!(said.contains("scenes/lamp.toml") && said.contains("changed"), "{said}");
+}
