@@ -17,7 +17,6 @@ pub mod film;
 pub mod frame;
 pub mod gpu;
 pub mod irradiance;
-mod jcs;
 pub mod job;
 pub mod numerics;
 pub mod penumbra;
@@ -64,4 +63,13 @@ pub enum RenderError {
         /// What the system said.
         source: std::io::Error,
     },
+}
+
+impl From<kelir_jcs::Error> for RenderError {
+    fn from(error: kelir_jcs::Error) -> Self {
+        match error {
+            kelir_jcs::Error::Lost(_) => Self::Knob(error.to_string()),
+            kelir_jcs::Error::Unwritable(_) => Self::Encode(error.to_string()),
+        }
+    }
 }

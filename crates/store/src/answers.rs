@@ -8,7 +8,6 @@ use crate::plans::{PlannedTrial, decided, insert_trials};
 use crate::sessions::Session;
 use crate::sqlite::Store;
 use kelir_study::trials::Role;
-use kelir_study::versions::canonical;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -294,7 +293,7 @@ impl Head {
             answer_hash,
             self.row_hash,
         ]);
-        let row = canonical(&values).map_err(|error| StoreError::corrupt("answer", error))?;
+        let row = kelir_jcs::canonical(values).map_err(|error| StoreError::corrupt("answer", error))?;
         let row_hash = sha256_hex(row.as_bytes());
         sqlx::query(
             "INSERT INTO answers (study_id, seq, session_id, trial_index, row, row_hash) VALUES ($1, $2, $3, $4, $5, $6)",

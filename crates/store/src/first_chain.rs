@@ -100,7 +100,7 @@ impl FirstRow {
 /// The answer of a row of `responses`, as rows of version 2 have it.
 pub(crate) fn answer(choice: &str, rt_ms: f64) -> Result<String, StoreError> {
     let answer = json!({ "choice": choice, "rt_ms": rt_ms });
-    kelir_study::versions::canonical(&answer).map_err(|error| StoreError::corrupt("answer", error))
+    kelir_jcs::canonical(answer).map_err(|error| StoreError::corrupt("answer", error))
 }
 
 /// A row of [`SELECT`] in the shape of all others.

@@ -45,7 +45,7 @@ pub(crate) fn of(
     let decoded = |name: &String| decode(&frame(name).ok_or_else(|| missing(name))?);
     let first = decoded(manifest.frames.first().ok_or("names no frames")?)?;
     let size = [first.width(), first.height()];
-    let fps = kelir_study::versions::canonical(&manifest.fps)?;
+    let fps = kelir_jcs::canonical(manifest.fps.into()).map_err(|error| error.to_string())?;
     let header = format!("{} {fps} {}", manifest.frames.len(), manifest.repeat);
     Ok(Pixels { size, sha256: hash(size, &header, manifest.frames.iter().map(decoded))? })
 }

@@ -3,17 +3,8 @@
 //! Everything is hashed as RFC 8785 canonical JSON (JCS): keys sorted, numbers as ECMAScript writes them, −0 as 0.
 
 use crate::definition::{StudyDefinition, hex};
-use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-
-/// Canonical JSON (RFC 8785) of a value.
-///
-/// # Errors
-/// A number that is not finite, or an object whose keys are no texts; the message says which.
-pub fn canonical(value: &impl Serialize) -> Result<String, String> {
-    serde_json_canonicalizer::to_string(value).map_err(|error| error.to_string())
-}
 
 /// One picture or animation that a version shows.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,7 +27,7 @@ const TEXTS_NOT_JUDGED_BY: [&str; 4] = ["welcome", "consent", "debriefing", "tha
 impl StudyDefinition {
     /// SHA-256 (hex) over all values of the file: comments and layout do not count, every value does.
     pub fn file_hash(&self) -> String {
-        digest(&self.value())
+        digest(self.value())
     }
 
     /// SHA-256 (hex) over what answers depend on: all values but those that nobody judges by (title, texts but the instructions, minutes,
@@ -52,7 +43,7 @@ impl StudyDefinition {
                 block.as_object_mut().and_then(|block| block.remove("title"));
             }
         }
-        digest(&value)
+        digest(value)
     }
 
     /// The version of a study with these stimuli: SHA-256 (hex) over JCS {v: 1, design_hash, stimuli: sorted [item, condition, size,
@@ -62,7 +53,7 @@ impl StudyDefinition {
         stimuli.sort();
         let rows: Vec<Value> =
             stimuli.iter().map(|s| json!([s.item, s.condition, s.size, s.pixels_sha256])).collect();
-        digest(&json!({ "v": 1, "design_hash": self.design_hash(), "stimuli": rows }))
+        digest(json!({ "v": 1, "design_hash": self.design_hash(), "stimuli": rows }))
     }
 
     /// The definition as JSON text; [`StudyDefinition`] reads it back.
@@ -75,7 +66,7 @@ impl StudyDefinition {
     }
 }
 
-fn digest(value: &Value) -> String {
-    let text = canonical(value).expect("a JSON value holds only finite numbers and string keys");
+fn digest(value: Value) -> String {
+    let text = kelir_jcs::canonical(value).expect("a JSON value holds only finite numbers and string keys");
     hex(&Sha256::digest(text))
 }

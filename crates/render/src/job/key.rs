@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use super::{Job, hex};
-use crate::jcs::{canonical, exact};
 use crate::{Backend, RenderError, Technique, renderer};
+use kelir_jcs::{canonical, exact};
 
 /// The first line of what is hashed; another contract has another.
 const CONTRACT: &str = "kelir-job/2\n";

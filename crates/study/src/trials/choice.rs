@@ -2,7 +2,6 @@
 
 use super::{Checked, Choice, Observation, Placed, Role, Shown};
 use crate::schema::{FieldError, Record};
-use crate::versions::canonical;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
@@ -42,7 +41,8 @@ pub(super) fn check(schema: &Record, sent: &Value) -> Result<Checked, Vec<FieldE
         rt_ms: sent["rt"].as_f64().unwrap_or_default(),
     };
     let whole = |rule| vec![FieldError { pointer: String::new(), value: None, rule }];
-    Ok(Checked { answer: canonical(&answer).map_err(whole)? })
+    let json = serde_json::to_value(&answer).map_err(|error| whole(error.to_string()))?;
+    Ok(Checked { answer: kelir_jcs::canonical(json).map_err(|error| whole(error.to_string()))? })
 }
 
 /// What a stored answer says.

@@ -1,7 +1,6 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::versions::canonical;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use serde_json::json;
@@ -120,7 +119,7 @@ proptest! {
         prop_assert_eq!(checked.is_ok(), (0.0..=86_400_000.0).contains(&rt));
         let answer = checked.map_or_else(|_| json!({ "choice": "left", "rt_ms": rt.to_string() }).to_string(), |c| c.answer);
         let back: Value = serde_json::from_str(&answer).unwrap();
-        prop_assert_eq!(&canonical(&back).unwrap(), &answer);
+        prop_assert_eq!(&kelir_jcs::canonical(back.clone()).unwrap(), &answer);
         if let Some(read) = back["rt_ms"].as_f64() {
             prop_assert_eq!((read + 0.0).to_bits(), (rt + 0.0).to_bits());
         }

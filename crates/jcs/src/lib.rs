@@ -3,17 +3,25 @@
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
-use crate::RenderError;
+/// Why a value has no canonical JSON.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Error {
+    /// JSON cannot hold it.
+    #[error("{0}: JSON cannot hold it; numbers must be finite")]
+    Lost(String),
+    /// The canonicalizer refused.
+    #[error("canonical JSON: {0}")]
+    Unwritable(String),
+}
 
 /// Beyond 2⁵³ not every whole number is an f64, and RFC 8785 knows no others.
 const EXACT: u64 = 1 << 53;
 
 /// The canonical text of `value`: members in the order of their UTF-16, numbers as ECMAScript writes them, −0 as 0. A whole number beyond
 /// 2⁵³ would become its neighbour; it is written as a string, as the RFC's appendix D has it. Errors: none that a [`Value`] can cause.
-pub fn canonical(mut value: Value) -> Result<String, RenderError> {
+pub fn canonical(mut value: Value) -> Result<String, Error> {
     quote(&mut value);
-    serde_json_canonicalizer::to_string(&value)
-        .map_err(|e| RenderError::Encode(format!("canonical JSON: {e}")))
+    serde_json_canonicalizer::to_string(&value).map_err(|error| Error::Unwritable(error.to_string()))
 }
 
 fn quote(value: &mut Value) {
@@ -29,11 +37,11 @@ fn quote(value: &mut Value) {
 
 /// `value` as JSON that reads back as the same value. Errors: it does not, as with a number that is not finite, which serde_json (and the
 /// canonicalizer, below the top) would write as null.
-pub fn exact<T>(value: &T) -> Result<Value, RenderError>
+pub fn exact<T>(value: &T) -> Result<Value, Error>
 where
     T: Serialize + DeserializeOwned + PartialEq + std::fmt::Debug,
 {
-    let lost = || RenderError::Knob(format!("{value:?}: JSON cannot hold it; numbers must be finite"));
+    let lost = || Error::Lost(format!("{value:?}"));
     let json = serde_json::to_value(value).map_err(|_| lost())?;
     match T::deserialize(&json) {
         Ok(back) if back == *value => Ok(json),
