@@ -4,6 +4,7 @@ use crate::document::{Cell, Piece, Row, Section, Table};
 use crate::figures;
 use crate::format::{MISSING, count, fixed, p_value, range, significant};
 use crate::numbers::{Number, Sample, of_block, psychometric};
+use kelir_study::analysis::BlockSummary;
 use kelir_study::report::{BlockReport, LEVEL};
 
 /// The section of a block.
@@ -13,13 +14,10 @@ pub(crate) fn section(block: &BlockReport) -> Section {
     let mut pieces = vec![Piece::Text(format!(
         "{a} against {b}, {} of {}; counted are choices of {}.",
         count(summary.items as u64, "pair"),
-        match summary.kind {
-            kelir_study::Kind::Still => "still pictures",
-            kelir_study::Kind::Animation => "animations",
-        },
+        shown(summary),
         summary.target
     ))];
-    if block.left.is_none() {
+    if block.first.is_none() {
         pieces.push(Piece::Text("Nobody has answered yet.".to_owned()));
         return Section::new(title(block), pieces);
     }
@@ -32,6 +30,18 @@ pub(crate) fn section(block: &BlockReport) -> Section {
         pieces.push(Piece::Table(table("", &psychometric(Sample::Screened, &summary.id, found))));
     }
     Section::new(title(block), pieces)
+}
+
+/// What is shown, and how where that is not at once.
+fn shown(summary: &BlockSummary) -> String {
+    let kind = match summary.kind {
+        kelir_study::Kind::Still => "still pictures",
+        kelir_study::Kind::Animation => "animations",
+    };
+    match summary.trial.as_str() {
+        "two-interval" => format!("{kind}, one after the other"),
+        _ => kind.to_owned(),
+    }
 }
 
 fn title(block: &BlockReport) -> String {

@@ -100,7 +100,7 @@ impl Document {
             subtitle: format!(
                 "Report of the study {}, version {}, by kelir {}",
                 report.study,
-                short(&report.config_hash),
+                short(&report.version),
                 report.kelir_version
             ),
             sections: sections::all(report),

@@ -32,7 +32,7 @@ pub(crate) fn choices(blocks: &[BlockReport]) -> Option<Piece> {
         }
     };
     let mut rows = Vec::new();
-    for block in blocks.iter().filter(|b| b.left.is_some()) {
+    for block in blocks.iter().filter(|b| b.first.is_some()) {
         let summary = &block.summary;
         let [a, b] = &summary.conditions;
         let other = if *a == summary.target { b } else { a };
@@ -186,7 +186,7 @@ pub(crate) fn judged(report: &StudyReport) -> Vec<Judged<'_>> {
             for stimulus in report
                 .stimuli
                 .iter()
-                .filter(|s| s.pair == pair.id && block.summary.conditions.contains(&s.condition))
+                .filter(|s| s.item == pair.id && block.summary.conditions.contains(&s.condition))
             {
                 let Some(error) = stimulus.error() else { continue };
                 let Interval { low, high, level } = target.wilson;

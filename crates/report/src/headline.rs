@@ -1,7 +1,7 @@
 //! What was asked, what was found, and what was not shown.
 
 use crate::StudyReport;
-use crate::document::{Piece, Section};
+use crate::document::{Piece, Section, short};
 use crate::format::{count, fixed, list, p_equals, percent, significant};
 use kelir_stats::inference::Bounds;
 use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER};
@@ -9,10 +9,12 @@ use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER};
 /// The report's first section.
 pub(crate) fn section(report: &StudyReport) -> Section {
     let mut pieces = Vec::new();
-    if let Some((row, what)) = &report.chain.broken {
-        pieces.push(Piece::Warning(format!(
-            "Stored answer {row} is not what was written: {what}. Do not use these data before you know why."
-        )));
+    let unexplained = report.chain.faults.iter().filter(|fault| fault.note.is_none());
+    pieces.extend(unexplained.take(MOST_FAULTS).map(|fault| {
+        Piece::Warning(format!("{}. Do not use these data before you know why.", fault.sentence()))
+    }));
+    if report.pooled.len() > 1 {
+        pieces.push(Piece::Warning(pooling(report)));
     }
     pieces.push(Piece::Heading("Asked".to_owned()));
     pieces.push(Piece::List(asked(report)));
@@ -23,6 +25,34 @@ pub(crate) fn section(report: &StudyReport) -> Section {
         pieces.push(Piece::List(not_shown(report)));
     }
     Section::new("In short", pieces)
+}
+
+/// Faults that are told in short; the table of data has them all.
+const MOST_FAULTS: usize = 5;
+
+/// Which versions are pooled, and what they do not show alike.
+fn pooling(report: &StudyReport) -> String {
+    let versions: Vec<String> = report
+        .pooled
+        .iter()
+        .map(|v| {
+            format!(
+                "{} ({}, {})",
+                short(&v.version),
+                count(v.sessions, "session"),
+                count(v.answers, "answer")
+            )
+        })
+        .collect();
+    let different: Vec<String> =
+        report.different_stimuli.iter().map(|s| format!("{} ({})", s.item, s.condition)).collect();
+    let shown = match different.as_slice() {
+        [] => "They show the same pictures.".to_owned(),
+        some => {
+            format!("They do not show the same: {}. A number below is of all of these together.", list(some))
+        }
+    };
+    format!("Answers to {} versions of the study are pooled: {}. {shown}", versions.len(), list(&versions))
 }
 
 fn asked(report: &StudyReport) -> Vec<String> {
@@ -85,6 +115,12 @@ fn of_block(block: &BlockReport) -> String {
     let (summary, analysis) = (&block.summary, &block.analysis);
     let (title, target, other) = (&summary.title, &summary.target, other(block));
     let Some(share) = &analysis.proportion else {
+        if let (true, Some(note)) = (block.first.is_some() && summary.counts.is_empty(), &summary.note) {
+            return format!(
+                "{title}: {} went to the end of the procedure; {note}.",
+                count(summary.n, "participant")
+            );
+        }
         return format!("{title}: no participant has answered every pair yet.");
     };
     let interval =

@@ -13,6 +13,7 @@ mod html;
 mod markdown;
 mod numbers;
 mod sections;
+mod sources;
 mod text;
 
 pub use csv::csv;
@@ -40,8 +41,12 @@ pub struct StudyReport {
     pub title: String,
     /// The question over every pair.
     pub question: String,
-    /// Version of the study that this is of.
-    pub config_hash: String,
+    /// Version of the study that this is of: SHA-256 of its design and of the pixels that it shows.
+    pub version: String,
+    /// The versions whose answers are in here, the one above first: others only where somebody named them.
+    pub pooled: Vec<PooledVersion>,
+    /// What the pooled versions do not show alike.
+    pub different_stimuli: Vec<DifferentStimulus>,
     /// Version of kelir that judged.
     pub kelir_version: String,
     /// When the first and the last answer came, ISO-8601 UTC; null without answers.
@@ -62,8 +67,8 @@ pub struct StudyReport {
     /// What was shown, with how it was made and its measured error.
     pub stimuli: Vec<Stimulus>,
     /// Other versions of the study that have sessions; their answers are not in here.
-    pub other_versions: Vec<OtherVersion>,
-    /// Whether the stored answers are what was written: the chain over all studies of the data folder.
+    pub other_versions: Vec<PooledVersion>,
+    /// Whether the stored answers are what was written: the study's own chain and, before it, the one that all studies used to share.
     pub chain: Chain,
     /// The paper's own tests, computed again, for the study that repeats them.
     pub paper: Option<Replication>,
@@ -91,24 +96,39 @@ pub struct Excluded {
     pub reasons: Vec<Exclusion>,
 }
 
-/// A version of the study that the results leave out.
-#[derive(Clone, Debug, Serialize, ToSchema)]
-pub struct OtherVersion {
-    /// Hash of its definition.
-    pub config_hash: String,
+/// A version of a study and what it has gathered.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct PooledVersion {
+    /// SHA-256 of its design and of the pixels that it shows.
+    pub version: String,
     /// Sessions begun with it.
     pub sessions: u64,
+    /// Answers to it.
+    pub answers: u64,
 }
 
-/// What one pair of a study shows under one condition.
+/// An item that pooled versions show in different ways under one condition.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct DifferentStimulus {
+    /// Item's id.
+    pub item: String,
+    /// Condition's name.
+    pub condition: String,
+    /// The versions that show it otherwise than the first of the pooled ones, or not at all.
+    pub versions: Vec<String>,
+}
+
+/// What one item of a study shows under one condition.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Stimulus {
     /// Item's id.
-    pub pair: String,
+    pub item: String,
     /// Condition's name.
     pub condition: String,
-    /// Hash of the stimulus.
+    /// Hash of the stimulus's file.
     pub sha256: String,
+    /// Hash of its decoded pixels.
+    pub pixels_sha256: String,
     /// How it was made, with its measured error.
     pub provenance: Value,
 }
@@ -146,19 +166,40 @@ impl Stimulus {
 /// What checking the stored answers found.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Chain {
-    /// Rows that were checked, up to and including a broken one.
+    /// Rows that were checked.
     pub rows: u64,
-    /// Hash of the last good row; noting it elsewhere also proves that no later rows were cut off.
+    /// Hash of the last row; noting it elsewhere also proves that no later rows were cut off.
     pub head: String,
-    /// Number of the first row that is not what was written, and what is wrong with it.
-    pub broken: Option<(i64, String)>,
-    /// Payloads that were blanked by a withdrawal.
+    /// Rows that are not what was written.
+    pub faults: Vec<Fault>,
+    /// Answers that were blanked by a withdrawal.
     pub blanked: u64,
+}
+
+/// A stored answer that is not what was written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Fault {
+    /// Version of the chain: 1 (all studies in one, closed) or 2 (the study's own).
+    pub chain: u32,
+    /// Place in its chain, from 1.
+    pub seq: i64,
+    /// What is wrong with it.
+    pub what: String,
+    /// What somebody who looked into it noted; null while it is unexplained.
+    pub note: Option<String>,
+}
+
+impl Fault {
+    /// The row and what is wrong with it, as a sentence without its end.
+    pub fn sentence(&self) -> String {
+        let first = if self.chain == 1 { " of the closed first chain" } else { "" };
+        format!("Stored answer {}{first} is not what was written: {}", self.seq, self.what)
+    }
 }
 
 impl StudyReport {
     /// Whether anybody has answered anything that is analysed.
     pub fn is_empty(&self) -> bool {
-        self.blocks_with_excluded.as_ref().unwrap_or(&self.report.blocks).iter().all(|b| b.left.is_none())
+        self.blocks_with_excluded.as_ref().unwrap_or(&self.report.blocks).iter().all(|b| b.first.is_none())
     }
 }

@@ -6,6 +6,7 @@ use kelir_stats::clustered::{Bootstrap, Coefficient};
 use kelir_stats::inference::{Bounds, Interval};
 use kelir_stats::pairwise::ScaleIntervals;
 use kelir_study::report::{ALPHA, BlockReport, LEVEL, Parameter, Proportion, PsychometricReport};
+use kelir_study::trials::Role;
 
 /// Whose answers a number is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +83,7 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
     }
     for stimulus in &report.stimuli {
         let rows = Rows::of(Sample::Screened, "", "stimulus error");
-        let of = format!("of {}, {} (share of full scale)", stimulus.pair, stimulus.condition);
+        let of = format!("of {}, {} (share of full scale)", stimulus.item, stimulus.condition);
         if let Some(error) = stimulus.error() {
             let what = if error.own { "own standard error" } else { "RMSE in penumbra" };
             all.push(rows.number(format!("{what} {of}"), error.rms, 6));
@@ -291,11 +292,16 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
             }),
         );
     }
-    all.extend(block.left.as_ref().map(|left| {
-        rows("sides")
-            .share("share of the left picture (proportion)", left)
-            .noted("n: choices; far from 0.5: a bias of side")
-    }));
+    let (what, bias) = match block.first_role {
+        Role::Left | Role::Right => ("share of the left picture (proportion)", "a bias of side"),
+        Role::First | Role::Second => ("share of the first interval (proportion)", "a bias of order"),
+    };
+    all.extend(
+        block
+            .first
+            .as_ref()
+            .map(|first| rows("sides").share(what, first).noted(format!("n: choices; far from 0.5: {bias}"))),
+    );
     if let Some(times) = &block.rt_ms {
         let row = rows("response time");
         for (name, ms) in [

@@ -4,9 +4,9 @@ use crate::blocks::{self, table};
 use crate::document::{Cell, Piece, Row, Section, Table};
 use crate::format::{MISSING, count, fixed, p_value, percent, range, share, significant};
 use crate::numbers::{Sample, of_scale};
-use crate::{StudyReport, figures, headline};
+use crate::{StudyReport, figures, headline, sources};
 use kelir_study::screening::Exclusion;
-use kelir_study::{Condition, Kind};
+use kelir_study::{Condition, Kind, StudyDefinition, TrialKind};
 
 /// Excluded participants that are named one by one.
 const MOST_LISTED: usize = 100;
@@ -29,9 +29,9 @@ pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
     sections.extend(errors(report));
     sections.extend(both_ways(report));
     sections.extend(paper(report));
-    sections.push(methods(report));
-    sections.push(data(report));
-    sections.push(citation(report));
+    sections.push(sources::methods(report));
+    sections.push(sources::data(report));
+    sections.push(sources::citation(report));
     sections
 }
 
@@ -123,7 +123,10 @@ fn design(report: &StudyReport) -> Section {
         let [a, b] = &block.conditions;
         Row::Cells(vec![
             Cell::text(title),
-            Cell::text(kind),
+            Cell::text(match block.trial {
+                TrialKind::TwoAlternative => kind.to_owned(),
+                TrialKind::TwoInterval(_) => format!("{kind}, one after the other"),
+            }),
             Cell::text(format!("{a} / {b}")),
             Cell::text(&block.target),
             Cell::whole(block.items.len() as u64),
@@ -148,12 +151,23 @@ fn design(report: &StudyReport) -> Section {
     let conditions = Table::new("", &["condition", "made by"], rows.collect());
     let [width, height] = study.size;
     let text = format!(
-        "“{}”, asked of {} in {}, two at a time side by side, {width} × {height} pixels each; one of the two had to be chosen.",
+        "“{}”, asked of {} in {}, two pictures {}, {width} × {height} pixels each; one of the two had to be chosen.",
         study.question,
-        count(study.trial_count() as u64, "pair"),
-        count(study.blocks.len() as u64, "block")
+        count(study.most_trials() as u64, "trial"),
+        count(study.blocks.len() as u64, "block"),
+        shown(study)
     );
     Section::new("Design", vec![Piece::Text(text), Piece::Table(blocks), Piece::Table(conditions)])
+}
+
+/// How the two pictures of a trial are shown.
+fn shown(study: &StudyDefinition) -> &'static str {
+    let at_once = study.blocks.iter().filter(|block| block.trial == TrialKind::TwoAlternative).count();
+    match at_once {
+        0 => "one after the other",
+        n if n == study.blocks.len() => "at a time side by side",
+        _ => "at a time side by side or one after the other, as the table says",
+    }
 }
 
 fn scale(report: &StudyReport) -> Option<Section> {
@@ -336,80 +350,4 @@ fn paper(report: &StudyReport) -> Option<Section> {
         )));
     }
     Some(Section::new("The paper that this study repeats", pieces))
-}
-
-fn methods(report: &StudyReport) -> Section {
-    let mut pieces: Vec<Piece> = report.report.methods.iter().cloned().map(Piece::Text).collect();
-    pieces.push(Piece::Text(format!(
-        "All statistics were computed by kelir {}, in double precision, with the seed {} for resampling.",
-        report.kelir_version, report.design.seed
-    )));
-    Section::reference("Methods", pieces)
-}
-
-fn data(report: &StudyReport) -> Section {
-    let fact = |name: &str, value: &str| Row::Cells(vec![Cell::text(name), Cell::text(value)]);
-    let mut rows = vec![
-        fact("study", &report.study),
-        fact("version (SHA-256 of its definition)", &report.config_hash),
-        fact("seed", &report.design.seed.to_string()),
-        fact("kelir", &report.kelir_version),
-        fact("stored answers (all studies of the folder)", &report.chain.rows.to_string()),
-        fact("chain of answers ends in", &report.chain.head),
-        fact("payloads blanked by withdrawal", &report.chain.blanked.to_string()),
-    ];
-    if let Some((row, what)) = &report.chain.broken {
-        rows.push(fact("chain broken", &format!("answer {row}: {what}")));
-    }
-    let versions = Table::new("", &["what", "value"], rows);
-    let mut pieces = vec![Piece::Table(versions)];
-    if report.stimuli.is_empty() {
-        pieces.push(Piece::Text("No stimulus has been made yet.".to_owned()));
-    } else {
-        let rows = report.stimuli.iter().map(|stimulus| {
-            Row::Cells(vec![
-                Cell::text(&stimulus.pair),
-                Cell::text(&stimulus.condition),
-                Cell::maybe(stimulus.error().map(|e| e.rms), |e| significant(e, 3)),
-                Cell::text(&stimulus.sha256),
-            ])
-        });
-        let columns = ["pair", "condition", "RMS error#", "SHA-256"];
-        pieces.push(Piece::Table(Table::new(
-            "Stimuli, by the hash of their bytes.",
-            &columns,
-            rows.collect(),
-        )));
-    }
-    Section::reference("Data, versions and hashes", pieces)
-}
-
-fn citation(report: &StudyReport) -> Section {
-    let year = report
-        .answered
-        .as_ref()
-        .and_then(|[_, last]| last.get(..4))
-        .map_or(String::new(), |y| format!(" ({y})"));
-    let study = format!(
-        "{}{year} [study {}, definition SHA-256 {}, answers' chain {}].",
-        report.title, report.study, report.config_hash, report.chain.head
-    );
-    let kelir = format!(
-        "kelir {}: a platform for perceptual studies of shadows [computer software].",
-        report.kelir_version
-    );
-    let mut pieces = vec![
-        Piece::Text("Cite the data with its hashes, the software with its version, and the methods that a conclusion rests on.".to_owned()),
-        Piece::List(vec![study, kelir]),
-    ];
-    let mut references = report.report.references.clone();
-    if report.paper.is_some() {
-        references.push("Taylor, C., & Cameron, K. Rendering Virtual Shadow Puppet Theatres. Department of Computer Science, University of Bath. [The survey that this study repeats.]".to_owned());
-    }
-    references.sort();
-    if !references.is_empty() {
-        pieces.push(Piece::Heading("References".to_owned()));
-        pieces.push(Piece::List(references));
-    }
-    Section::reference("How to cite", pieces)
 }

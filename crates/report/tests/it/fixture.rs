@@ -1,6 +1,6 @@
 //! Studies with known answers.
 
-use kelir_report::{Chain, Excluded, Participants, Stimulus, StudyReport};
+use kelir_report::{Chain, Excluded, Participants, PooledVersion, Stimulus, StudyReport};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::{Answers, Participant, Row};
 use kelir_study::report::Report;
@@ -156,9 +156,9 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
             let block = design.blocks.iter().find(|b| b.items.iter().any(|p| p.id == *item_id)).unwrap();
             let chose_left = k % 2 == 0;
             let rest = block.conditions.iter().find(|c| *c != chosen).unwrap();
-            let left_condition = if chose_left { chosen } else { rest.as_str() };
+            let sides = if chose_left { [*chosen, rest.as_str()] } else { [rest.as_str(), *chosen] };
             let session_id = &format!("person-{i:03}");
-            answers.push(Row { session_id, item_id, left_condition, chose_left, rt_ms: *rt_ms });
+            answers.push(Row::choice(session_id, k as u32, item_id, sides, chose_left, *rt_ms));
         }
     }
     let everybody = answers.participants();
@@ -173,10 +173,11 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
     }
     let report = Report::of(&design, &judged);
     let with_excluded = (!excluded.is_empty()).then(|| Report::of(&design, &everybody));
-    let stimulus = |pair: &str, condition: &str, rmse: f64| Stimulus {
-        pair: pair.to_owned(),
+    let stimulus = |item: &str, condition: &str, rmse: f64| Stimulus {
+        item: item.to_owned(),
         condition: condition.to_owned(),
         sha256: "5f".repeat(32),
+        pixels_sha256: "a0".repeat(32),
         provenance: if rmse > 0.0 {
             json!({ "error": { "penumbra": { "rmse": rmse }, "floor": 0.003 } })
         } else {
@@ -187,7 +188,9 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
         study: design.id.clone(),
         title: design.title.clone(),
         question: design.question.clone(),
-        config_hash: design.config_hash(),
+        version: "c3".repeat(32),
+        pooled: vec![PooledVersion { version: "c3".repeat(32), sessions: people.len() as u64, answers: 0 }],
+        different_stimuli: Vec::new(),
         kelir_version: "0.1.0".to_owned(),
         answered: (!people.is_empty())
             .then(|| ["2026-11-22T14:22:22.960Z", "2026-11-22T15:02:01.000Z"].map(str::to_owned)),
@@ -209,7 +212,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
             stimulus("loop-a", "pa", 0.0),
         ],
         other_versions: Vec::new(),
-        chain: Chain { rows: 0, head: "0".repeat(64), broken: None, blanked: 0 },
+        chain: Chain { rows: 0, head: "0".repeat(64), faults: Vec::new(), blanked: 0 },
         paper: None,
         design,
     }

@@ -1,7 +1,9 @@
 //! How the numbers were got: a methods section of what was computed for this study, and nothing else.
 
+mod design;
+
 use super::{ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, REPLICATES, Report};
-use crate::definition::{GUESS, Kind, StudyDefinition};
+use crate::definition::{GUESS, StudyDefinition};
 use kelir_stats::pairwise::Estimator;
 
 const HEDGES: &str = "Hedges, L. V. (1981). Distribution theory for Glass's estimator of effect size and related estimators. Journal of \
@@ -36,7 +38,7 @@ const FIRTH: &str =
 /// Paragraphs of methods, and references, for what `report` holds.
 pub(super) fn of(study: &StudyDefinition, report: &Report) -> (Vec<String>, Vec<String>) {
     let mut text = Text::default();
-    text.say(design(study), &[]);
+    design::say(&mut text, study);
     text.say(screening(study), &[]);
     if any(report, |a| a.t_test.t.is_some()) {
         tests(&mut text, report);
@@ -70,35 +72,6 @@ impl Text {
             }
         }
     }
-}
-
-fn design(study: &StudyDefinition) -> String {
-    let of_kind = |kind| study.blocks.iter().filter(|b| b.kind == kind).map(|b| b.items.len()).sum::<usize>();
-    let kinds: Vec<String> = [(Kind::Still, "still"), (Kind::Animation, "animation")]
-        .into_iter()
-        .map(|(kind, name)| (of_kind(kind), name))
-        .filter(|(pairs, _)| *pairs > 0)
-        .map(|(pairs, name)| count(pairs, name))
-        .collect();
-    let catch = study.blocks.iter().filter(|b| b.catch).map(|b| b.items.len()).sum::<usize>();
-    let catch = if catch == 0 {
-        String::new()
-    } else {
-        format!(" Of these, {} served to catch inattention and entered no analysis.", count(catch, "pair"))
-    };
-    let [width, height] = study.size;
-    format!(
-        "Participants saw {} of pictures of {width} × {height} pixels ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
-         \"{}\" They had to choose one of each pair (two-alternative forced choice).{catch} Blocks came in a fixed order and items \
-         within a block in a random one. Sides were balanced within participants and, over participants, pair by pair (mirrored plans \
-         from the seed {}, given to the lowest place in the design that no completed or active session held).",
-        count(study.most_trials(), "pair"),
-        kinds.join(", "),
-        count(study.blocks.len(), "block"),
-        study.surround,
-        study.question,
-        study.seed,
-    )
 }
 
 fn screening(study: &StudyDefinition) -> String {

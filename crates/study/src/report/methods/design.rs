@@ -1,0 +1,126 @@
+//! What participants saw, in which order, and what decided it.
+
+use super::{Text, count};
+use crate::adaptive::{Adaptive, Track};
+use crate::definition::{Block, Kind, StudyDefinition};
+use crate::trials::{Intervals, TrialKind};
+
+const LEVITT: &str = "Levitt, H. (1971). Transformed up-down methods in psychoacoustics. Journal of the Acoustical Society of America, 49(2B), 467–477.";
+const KAERNBACH: &str = "Kaernbach, C. (1991). Simple adaptive testing with the weighted up-down method. Perception & Psychophysics, 49(3), 227–229.";
+const WATSON: &str = "Watson, A. B. (2017). QUEST+: A general multidimensional Bayesian adaptive psychometric method. Journal of Vision, 17(3), 10.";
+
+/// The design, and which procedures decided it.
+pub(super) fn say(text: &mut Text, study: &StudyDefinition) {
+    text.say(design(study), &[]);
+    procedures(text, study);
+}
+
+fn design(study: &StudyDefinition) -> String {
+    let of_kind = |kind| study.blocks.iter().filter(|b| b.kind == kind).map(|b| b.items.len()).sum::<usize>();
+    let kinds: Vec<String> = [(Kind::Still, "still"), (Kind::Animation, "animation")]
+        .into_iter()
+        .map(|(kind, name)| (of_kind(kind), name))
+        .filter(|(pairs, _)| *pairs > 0)
+        .map(|(pairs, name)| count(pairs, name))
+        .collect();
+    let catch = study.blocks.iter().filter(|b| b.catch).map(|b| b.items.len()).sum::<usize>();
+    let catch = if catch == 0 {
+        String::new()
+    } else {
+        format!(" Of these, {} served to catch inattention and entered no analysis.", count(catch, "pair"))
+    };
+    let [width, height] = study.size;
+    format!(
+        "Participants saw {} of pictures of {width} × {height} pixels ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
+         \"{}\" They had to choose one of the two pictures of each trial. {}{catch} Blocks came in a fixed order and items within a block in a \
+         random one. {} were balanced within participants and, over participants, item by item (mirrored plans from the seed {}, given to \
+         the lowest place in the design that no completed or active session held).",
+        pairs(study),
+        kinds.join(", "),
+        count(study.blocks.len(), "block"),
+        study.surround,
+        study.question,
+        presentation(study).join(" "),
+        if one_after_the_other(study).next().is_some() { "Sides and order" } else { "Sides" },
+        study.seed,
+    )
+}
+
+/// How many pairs of pictures participants saw.
+fn pairs(study: &StudyDefinition) -> String {
+    let most = if study.blocks.iter().any(|block| block.adaptive.is_some()) { "at most " } else { "" };
+    format!("{most}{}", count(study.most_trials(), "pair"))
+}
+
+fn one_after_the_other(study: &StudyDefinition) -> impl Iterator<Item = (&Block, &Intervals)> {
+    study.blocks.iter().filter_map(|block| match &block.trial {
+        TrialKind::TwoInterval(intervals) => Some((block, intervals)),
+        TrialKind::TwoAlternative => None,
+    })
+}
+
+/// How each kind of trial shows its pictures.
+fn presentation(study: &StudyDefinition) -> Vec<String> {
+    let mut sentences: Vec<String> = one_after_the_other(study)
+        .map(|(block, i)| {
+            format!(
+                "In the block \"{}\" one came after the other (two-interval forced choice): a fixation cross for {} ms, the first picture for {} \
+                 ms, a mask for {} ms and the second picture for {} ms, each rounded to whole frames of the participant's display.",
+                block.title, i.fixation_ms, i.first_ms, i.mask_ms, i.second_ms
+            )
+        })
+        .collect();
+    if study.blocks.iter().any(|block| block.trial == TrialKind::TwoAlternative) {
+        let the = if sentences.is_empty() { "The" } else { "In the other blocks the" };
+        sentences.push(format!(
+            "{the} two stood beside each other, or below each other in a narrow window (two-alternative forced choice)."
+        ));
+    }
+    sentences
+}
+
+/// Which procedure chose the levels of adaptive blocks.
+fn procedures(text: &mut Text, study: &StudyDefinition) {
+    for block in &study.blocks {
+        let Some(adaptive) = &block.adaptive else { continue };
+        let title = &block.title;
+        match adaptive {
+            Adaptive::Staircase { track, reversals, trials, .. } => {
+                let (rule, source) = match track {
+                    Track::Transformed { down } => {
+                        let down = count(*down as usize, "choice");
+                        (
+                            format!(
+                                "{down} of the target in a row made it harder, one of the other condition easier"
+                            ),
+                            LEVITT,
+                        )
+                    }
+                    Track::Weighted { target } => (
+                        format!("steps were weighted to settle where the target is chosen by {target}"),
+                        KAERNBACH,
+                    ),
+                };
+                text.say(
+                    format!(
+                        "In the block \"{title}\" an up-down staircase chose each trial's level from the answers before ({rule}; it ended after \
+                         {reversals} reversals or {trials} trials)."
+                    ),
+                    &[source],
+                );
+            }
+            Adaptive::QuestPlus { trials, precise_enough } => {
+                let precise = precise_enough.map_or(String::new(), |sd| {
+                    format!(" or once the threshold's posterior standard deviation was below {sd}")
+                });
+                text.say(
+                    format!(
+                        "In the block \"{title}\" QUEST+ chose each trial's level, the one expected to tell most about threshold, width and lapse \
+                         rate, from the answers before; it ended after {trials} trials{precise}."
+                    ),
+                    &[WATSON],
+                );
+            }
+        }
+    }
+}
