@@ -10,6 +10,7 @@ mod problems;
 pub mod adaptive;
 pub mod analysis;
 pub mod answers;
+pub mod columns;
 pub mod plan;
 pub mod power;
 pub mod report;

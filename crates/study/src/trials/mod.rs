@@ -60,6 +60,16 @@ impl Role {
         }
     }
 
+    /// What it means, as the end of a sentence.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Role::Left => "on the left, or above",
+            Role::Right => "on the right, or below",
+            Role::First => "in the first interval",
+            Role::Second => "in the second interval",
+        }
+    }
+
     /// The role of this name.
     pub fn named(name: &str) -> Option<Role> {
         Role::ALL.into_iter().find(|role| role.name() == name)

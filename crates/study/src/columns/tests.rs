@@ -1,0 +1,124 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::plan::TrialPlan;
+use std::collections::BTreeSet;
+
+fn study() -> StudyDefinition {
+    let block = |id: &str, more: &str| {
+        format!(
+            "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\n{more}\n\
+             items = [{{ id = \"{id}-x\", scene = \"a.toml\" }}]\n"
+        )
+    };
+    let text = format!(
+        "title = \"t\"\nquestion = \"q\"\nseed = 1\nsize = [64, 36]\nestimated_minutes = 1\n\
+         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
+         conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }} }}\n{}{}{}",
+        block("sides", ""),
+        block("easy", "catch = true"),
+        block("intervals", "trial = \"two-interval\""),
+    );
+    StudyDefinition::parse("s.toml", &text).unwrap()
+}
+
+#[test]
+fn every_column_that_there_was_is_there_in_its_place_and_every_one_is_explained() {
+    let codebook = codebook();
+    let names: Vec<&str> = codebook.iter().map(|column| column.name.as_str()).collect();
+    assert_eq!(names[..FIRST.len()], FIRST);
+    assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "no name twice: {names:?}");
+    for column in &codebook {
+        assert!(column.meaning.len() > 4, "{column:?}");
+        assert!(!column.name.contains('.'), "{column:?}");
+    }
+    for name in [
+        "trial_kind",
+        "version",
+        "design_hash",
+        "item_id",
+        "repeat",
+        "is_catch",
+        "is_practice",
+        "css_width_px",
+        "min_visible_ms",
+        "shown_left_condition",
+        "shown_left_sha256",
+        "shown_second_condition",
+        "shown_second_sha256",
+        "requested_ms_mask",
+    ] {
+        assert!(names.contains(&name), "{name}");
+    }
+    let column = |name: &str| codebook.iter().find(|column| column.name == name).unwrap();
+    assert!(column("scale").meaning.contains("Device pixels per stimulus pixel"));
+    assert_eq!(column("arrangement").values.len(), 2);
+    assert!(column("input").values.iter().any(|value| value.value == "pen"));
+}
+
+#[test]
+fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_columns_empty() {
+    let study = study();
+    let session = SessionColumns {
+        subject_id: "p1".to_owned(),
+        session_id: "s".to_owned(),
+        study_id: study.id.clone(),
+        config_hash: "v".to_owned(),
+        version: "v".to_owned(),
+        design_hash: "d".to_owned(),
+        status: SessionStatus::InProgress,
+        percent_complete: 100.0 / 3.0,
+        slot: 0,
+        plan_seed: "0".to_owned(),
+    };
+    let rows = Rows::default();
+    for trial in TrialPlan::for_slot(&study, 0).trials {
+        let rules = trial.trial.rules();
+        let roles = rules.roles();
+        let sha256: BTreeMap<Role, &str> = [(roles[0], "aa"), (roles[1], "bb")].into();
+        for chose_first in [true, false] {
+            let mut payload = rules.simulate(chose_first, 812.5);
+            payload["viewport"] = json!([1280, 800.5]);
+            payload["requested_ms"] = json!({ "mask": 250 });
+            let checked = rules.check(&payload).map_or_else(|_| String::new(), |checked| checked.answer);
+            let answer = if trial.trial.name() == "two-interval" {
+                json!({ "choice": roles[usize::from(!chose_first)].name(), "rt_ms": 812.5 }).to_string()
+            } else {
+                checked
+            };
+            let cells = rows.cells(&Answered {
+                study: &study,
+                session: &session,
+                trial: &trial,
+                sha256: sha256.clone(),
+                answer: Some(&answer),
+                payload: &payload,
+                payload_hash: Some("ph".to_owned()),
+                answer_hash: "ah",
+                received_at: "2026-11-28T10:00:00.000Z",
+                place: (2, 7),
+            });
+            let cell = |name: &str| cells[rows.names().iter().position(|n| n == name).unwrap()].as_str();
+            let chosen = roles[usize::from(!chose_first)];
+            let condition = &*trial.shown[&chosen].condition;
+            assert_eq!((cell("response"), cell("chosen_condition")), (chosen.name(), condition));
+            assert_eq!(cell("target_chosen"), if condition == "pa" { "1" } else { "0" });
+            let catch = trial.block_id == "easy";
+            assert_eq!(cell("is_catch"), if catch { "1" } else { "0" });
+            assert_eq!(cell("correct"), if catch { cell("target_chosen") } else { "" });
+            assert_eq!(
+                (cell("rt"), cell("viewport_height"), cell("percent_complete")),
+                ("812.5", "800.5", "33.333333333333336")
+            );
+            let intervals = trial.trial.name() == "two-interval";
+            assert_eq!(cell("left_condition").is_empty(), intervals);
+            assert_eq!(cell("shown_first_condition").is_empty(), !intervals);
+            assert_eq!(cell(&format!("shown_{}_sha256", roles[1].name())), "bb");
+            assert_eq!(cell("stimulus"), r#"["aa","bb"]"#);
+            assert_eq!(
+                (cell("requested_ms_mask"), cell("status"), cell("chain_seq")),
+                ("250", "in progress", "7")
+            );
+        }
+    }
+}
