@@ -13,6 +13,7 @@ pub mod answers;
 pub mod plan;
 pub mod power;
 pub mod report;
+pub mod schema;
 pub mod screening;
 
 pub use definition::{

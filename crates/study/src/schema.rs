@@ -1,0 +1,116 @@
+//! Records that say of themselves what they are: a Rust type's JSON schema, used to check what came in and to write codebooks.
+//!
+//! A type that derives [`ToSchema`] states each field's range, length, unit (`x-unit`) and meaning once. [`Record`] is that statement,
+//! read: [`Record::check`] names every breach of it in a JSON value, [`Record::columns`] lists its fields for a codebook.
+
+mod check;
+mod columns;
+mod worded;
+mod words;
+
+pub use crate::worded;
+use check::Check;
+pub use columns::{Column, Meaning};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+use utoipa::openapi::{RefOr, Schema};
+
+/// One thing that is wrong with a JSON value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FieldError {
+    /// Where: a JSON Pointer (RFC 6901); empty for the whole.
+    pub pointer: String,
+    /// What was found there, long texts cut; absent where the field is missing, or secret.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<Value>,
+    /// The rule that it breaks, as words that follow the field's name.
+    pub rule: String,
+}
+
+/// A schema with the schemas that it names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    schema: Value,
+    components: Map<String, Value>,
+}
+
+impl Record {
+    /// What `T` says of itself.
+    pub fn of<T: ToSchema>() -> Record {
+        let mut components = Vec::new();
+        T::schemas(&mut components);
+        Record::new(&T::schema(), components)
+    }
+
+    /// A schema and the components by which its `$ref`s are resolved.
+    pub fn new(
+        schema: &RefOr<Schema>,
+        components: impl IntoIterator<Item = (String, RefOr<Schema>)>,
+    ) -> Record {
+        let components = components.into_iter().map(|(name, schema)| (name, json(&schema)));
+        Record { schema: json(schema), components: components.collect() }
+    }
+
+    /// Everything in `value` that the schema does not allow, in the order of the schema's walk; empty when all is right.
+    ///
+    /// JSON Schema 2020-12, the part of it that Rust types come to: `type`, `enum`, `const`, bounds of numbers, lengths of texts (in
+    /// characters), lists, objects, `allOf`, `anyOf`, `oneOf`, `$ref`. [`Record::unsupported`] names what else a schema holds.
+    pub fn check(&self, value: &Value) -> Vec<FieldError> {
+        Check::of(self, value)
+    }
+
+    /// Keywords of the schema that [`Record::check`] does not hold a value to, sorted.
+    pub fn unsupported(&self) -> Vec<String> {
+        let mut found = std::collections::BTreeSet::new();
+        std::iter::once(&self.schema).chain(self.components.values()).for_each(|s| unchecked(s, &mut found));
+        found.into_iter().collect()
+    }
+
+    /// The schema behind a chain of `$ref`s.
+    fn resolve<'a>(&'a self, mut schema: &'a Value) -> &'a Value {
+        // A chain longer than there are components goes round.
+        for _ in 0..=self.components.len() {
+            let name = schema.get("$ref").and_then(Value::as_str).and_then(|path| path.rsplit('/').next());
+            match name.and_then(|name| self.components.get(name)) {
+                Some(next) => schema = next,
+                None => break,
+            }
+        }
+        schema
+    }
+}
+
+fn json(schema: &RefOr<Schema>) -> Value {
+    serde_json::to_value(schema).expect("a schema is made of texts, numbers and lists")
+}
+
+/// Keywords that constrain nothing, or that [`Check`] knows.
+const KNOWN: &str = " $ref type enum const minimum maximum exclusiveMinimum exclusiveMaximum minLength maxLength items prefixItems minItems \
+    maxItems properties required additionalProperties propertyNames minProperties maxProperties allOf anyOf oneOf \
+    title description summary format default example examples deprecated readOnly writeOnly discriminator xml ";
+
+fn unchecked(schema: &Value, found: &mut std::collections::BTreeSet<String>) {
+    let Value::Object(schema) = schema else { return };
+    for (key, part) in schema {
+        match (key.as_str(), part) {
+            ("properties", Value::Object(properties)) => {
+                properties.values().for_each(|property| unchecked(property, found));
+            }
+            ("allOf" | "anyOf" | "oneOf" | "prefixItems", Value::Array(parts)) => {
+                parts.iter().for_each(|part| unchecked(part, found));
+            }
+            ("items" | "additionalProperties" | "propertyNames", part) => unchecked(part, found),
+            (key, _) if key.starts_with("x-") || KNOWN.contains(&format!(" {key} ")) => {}
+            (key, _) => drop(found.insert(key.to_owned())),
+        }
+    }
+}
+
+fn list<'a>(schema: &'a Value, key: &str) -> &'a [Value] {
+    schema.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+}
+
+#[cfg(test)]
+mod tests;
