@@ -2,10 +2,10 @@
 
 use crate::library::{Library, beside};
 use crate::picture;
-use kelir_store::{Render, Store, StoreError, sha256_hex};
+use kelir_store::{ANIMATION, Render, StimulusInfo, Store, StoreError, StudyStimulus, sha256_hex};
 use kelir_study::{Block, Condition, Item, StudyDefinition};
 use serde_json::{Value, json};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// One stimulus to make: a pair of a study under one of its conditions.
@@ -85,8 +85,31 @@ pub struct Making {
     pub fraction: f64,
 }
 
-/// Hashes of a study's stimuli by (pair id, condition).
-pub(crate) type StimulusMap = HashMap<(String, String), String>;
+/// A study's stimuli, by item and condition.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StimulusMap(BTreeMap<(String, String), StudyStimulus>);
+
+impl StimulusMap {
+    /// What an item shows under a condition.
+    ///
+    /// # Errors
+    /// [`MakingError::Missing`] names what is not there.
+    pub(crate) fn get(&self, item: &str, condition: &str) -> Result<&StudyStimulus, MakingError> {
+        let missing = || MakingError::Missing { item: item.to_owned(), condition: condition.to_owned() };
+        self.0.get(&(item.to_owned(), condition.to_owned())).ok_or_else(missing)
+    }
+
+    /// Everything that is shown, by item and condition.
+    pub(crate) fn all(&self) -> Vec<StudyStimulus> {
+        self.0.values().cloned().collect()
+    }
+}
+
+impl FromIterator<StudyStimulus> for StimulusMap {
+    fn from_iter<T: IntoIterator<Item = StudyStimulus>>(stimuli: T) -> StimulusMap {
+        StimulusMap(stimuli.into_iter().map(|s| ((s.item.clone(), s.condition.clone()), s)).collect())
+    }
+}
 
 /// Every stimulus of a study, in the order of its file.
 pub(crate) fn tasks(study: &StudyDefinition) -> Vec<Task<'_>> {
@@ -108,6 +131,8 @@ pub(crate) fn tasks(study: &StudyDefinition) -> Vec<Task<'_>> {
 pub(crate) enum MakingError {
     #[error("{stimulus}: {reason}")]
     Stimulus { stimulus: String, reason: String },
+    #[error("item {item} has no stimulus of condition {condition}")]
+    Missing { item: String, condition: String },
     #[error(transparent)]
     Store(#[from] StoreError),
 }
@@ -121,9 +146,8 @@ pub(crate) async fn make(
     maker: &Arc<dyn Maker>,
     progress: &(dyn Fn(Making) + Send + Sync),
 ) -> Result<StimulusMap, MakingError> {
-    let config_hash = study.config_hash();
     let tasks = tasks(study);
-    let mut made = StimulusMap::new();
+    let mut made = Vec::new();
     for (done, task) in tasks.iter().enumerate() {
         let stimulus = format!("{} ({})", task.pair.id, task.name);
         let event = |fraction, step: &str| Making {
@@ -140,17 +164,26 @@ pub(crate) async fn make(
         let identity =
             tokio::task::block_in_place(|| identity(task, library, maker.as_ref())).map_err(failed)?;
         let job_key = sha256_hex(identity.as_bytes());
-        let sha256 = match intact(store, &job_key).await? {
-            Some(sha256) => sha256,
+        let (info, provenance) = match intact(store, &job_key).await? {
+            Some(known) => known,
             None => {
                 let drawn = tokio::task::block_in_place(|| {
                     draw(task, library, maker.as_ref(), &mut |fraction, step| progress(event(fraction, step)))
                 });
-                keep(store, &job_key, drawn.map_err(failed)?).await?
+                match keep(store, &job_key, drawn.map_err(failed)?).await {
+                    Err(error @ StoreError::Undecodable(_)) => return Err(failed(error.to_string())),
+                    kept => kept?,
+                }
             }
         };
-        store.put_study_stimulus(&study.id, &config_hash, &task.pair.id, task.name, &job_key).await?;
-        made.insert((task.pair.id.clone(), task.name.to_owned()), sha256);
+        made.push(StudyStimulus {
+            item: task.pair.id.clone(),
+            condition: task.name.to_owned(),
+            sha256: info.sha256,
+            pixels_sha256: info.pixels_sha256,
+            size: info.size,
+            provenance,
+        });
     }
     let total = tasks.len();
     progress(Making {
@@ -161,26 +194,24 @@ pub(crate) async fn make(
         total,
         fraction: 1.0,
     });
-    Ok(made)
+    Ok(made.into_iter().collect())
 }
 
-/// The stimulus of a finished job, if it and all it names are stored undamaged.
-async fn intact(store: &Store, job_key: &str) -> Result<Option<String>, StoreError> {
+/// The stimulus of a finished job and how it was made, if it and all it names are stored undamaged.
+async fn intact(store: &Store, job_key: &str) -> Result<Option<(StimulusInfo, Value)>, StoreError> {
     let Some(render) = store.render(job_key).await? else { return Ok(None) };
     let mut wanted = vec![render.sha256.clone()];
     while let Some(sha256) = wanted.pop() {
         match store.stimulus(&sha256).await {
-            Ok(Some((info, bytes))) if info.media_type == ANIMATION => wanted.extend(frames(&bytes)),
+            Ok(Some((media_type, bytes))) if media_type == ANIMATION => wanted.extend(frames(&bytes)),
             Ok(Some(_)) => {}
             Ok(None) | Err(StoreError::Damaged { .. }) => return Ok(None),
             Err(error) => return Err(error),
         }
     }
-    Ok(Some(render.sha256))
+    let info = store.stimulus_info(&render.sha256).await?;
+    Ok(info.map(|info| (info, render.provenance)))
 }
-
-/// Media type of an animation's manifest.
-pub(crate) const ANIMATION: &str = "application/vnd.kelir.animation+json";
 
 /// The frames that a manifest names, each once.
 fn frames(manifest: &[u8]) -> Vec<String> {
@@ -196,14 +227,15 @@ fn frames(manifest: &[u8]) -> Vec<String> {
     frames
 }
 
-async fn keep(store: &Store, job_key: &str, made: Made) -> Result<String, StoreError> {
+async fn keep(store: &Store, job_key: &str, made: Made) -> Result<(StimulusInfo, Value), StoreError> {
     for (media_type, bytes) in made.attachments {
         store.put_stimulus(&media_type, bytes).await?;
     }
-    let sha256 = store.put_stimulus(&made.media_type, made.bytes).await?;
-    let render = Render { job_key: job_key.to_owned(), sha256: sha256.clone(), provenance: made.provenance };
+    let info = store.put_stimulus(&made.media_type, made.bytes).await?;
+    let (sha256, provenance) = (info.sha256.clone(), made.provenance);
+    let render = Render { job_key: job_key.to_owned(), sha256, provenance };
     store.put_render(&render).await?;
-    Ok(sha256)
+    Ok((info, render.provenance))
 }
 
 fn identity(task: &Task<'_>, library: &Library, maker: &dyn Maker) -> Result<String, String> {

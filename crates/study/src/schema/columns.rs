@@ -37,31 +37,36 @@ impl Record {
     /// The unit is the extension `x-unit`; the meaning is the description, of the field or else of its type.
     pub fn columns(&self) -> Vec<Column> {
         let mut columns = Vec::new();
-        self.fields(&self.schema, "", &mut columns);
+        self.fields(&self.schema, ["", ""], &mut columns);
         columns
     }
 
-    fn fields(&self, schema: &Value, prefix: &str, columns: &mut Vec<Column>) {
+    /// `outer`: name and meaning of the field that these are within.
+    fn fields(&self, schema: &Value, outer: [&str; 2], columns: &mut Vec<Column>) {
         let mut properties = Map::new();
         self.properties(schema, &mut properties);
         for (name, field) in properties {
-            let name = if prefix.is_empty() { name } else { format!("{prefix}.{name}") };
+            let name = if outer[0].is_empty() { name } else { format!("{}.{name}", outer[0]) };
             let layers = self.layers(&field);
             let inner = layers.last().copied().unwrap_or(&field);
             let mut below = Map::new();
             self.properties(inner, &mut below);
-            if !below.is_empty() {
-                self.fields(inner, &name, columns);
-                continue;
-            }
             let said = |key: &str| {
                 layers.iter().find_map(|layer| layer.get(key)?.as_str()).unwrap_or_default().to_owned()
             };
+            let meaning = match outer[1] {
+                "" => said("description"),
+                of => format!("{} {}", of, said("description")),
+            };
+            if !below.is_empty() {
+                self.fields(inner, [&name, &meaning], columns);
+                continue;
+            }
             columns.push(Column {
                 name,
                 kind: kind(inner).to_owned(),
                 unit: said("x-unit"),
-                meaning: said("description"),
+                meaning,
                 values: values(inner),
             });
         }

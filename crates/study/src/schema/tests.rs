@@ -153,7 +153,7 @@ fn a_codebook_has_the_fields_with_their_units_meanings_and_values() {
         [kind.as_str(), unit.as_str(), meaning.as_str()]
     };
     assert_eq!(said("rt"), ["number", "ms", "Response time."]);
-    assert_eq!(said("window.width"), ["number", "px", "Its width."]);
+    assert_eq!(said("window.width"), ["number", "px", "The window. Its width."]);
     assert_eq!(said("count"), ["integer", "", "How often."]);
     assert_eq!(said("size"), ["list", "", "Width and height."]);
     assert_eq!(said("notes"), ["object", "", "Anything by name."]);
