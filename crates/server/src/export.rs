@@ -1,141 +1,91 @@
 //! Answers as a table: one tidy row a trial, and a codebook that says what each column is.
 
-use kelir_store::{ResponseRow, Session, Store, StoreError};
-use kelir_study::StudyDefinition;
+use crate::selection::Selection;
+use kelir_store::{PlannedTrial, Store, StoreError, sha256_hex};
+use kelir_study::columns::{Answered, Rows, SessionColumns, SessionStatus, codebook};
 use serde_json::Value;
 use std::collections::HashMap;
 
-/// Columns of the responses table and what they are: (name, type, unit, meaning). Names follow jsPsych where it has one.
-pub const CODEBOOK: &[(&str, &str, &str, &str)] = &[
-    ("subject_id", "text", "", "Participant: the recruiting panel's id, else the session's id"),
-    ("session_id", "text", "", "Session (UUID v7)"),
-    ("study_id", "text", "", "Study"),
-    ("config_hash", "text", "", "SHA-256 of the study's definition"),
-    ("status", "text", "", "Of the session: completed or in progress"),
-    ("percent_complete", "number", "%", "Part of the session's trials that have an answer"),
-    ("slot", "integer", "", "Place in the design; slots 2k and 2k + 1 are mirror images in side"),
-    ("plan_seed", "text", "", "Seed of the session's trial plan"),
-    ("trial_index", "integer", "", "Place of the trial in the session, from 0"),
-    ("trial_type", "text", "", "Plugin that showed the trial"),
-    ("plugin_version", "text", "", "Version of that plugin"),
-    ("block_id", "text", "", "Block"),
-    ("block_index", "integer", "", "Place of the block in the study, from 0"),
-    ("pair_id", "text", "", "Item"),
-    ("pair_index", "integer", "", "Place of the pair in its block's file order, from 0"),
-    ("kind", "text", "", "still or animation"),
-    ("stimulus", "text", "", "JSON array of the SHA-256 of the stimuli, left then right"),
-    ("left_condition", "text", "", "Condition shown on the left"),
-    ("right_condition", "text", "", "Condition shown on the right"),
-    ("left_sha256", "text", "", "SHA-256 of the stimulus on the left"),
-    ("right_sha256", "text", "", "SHA-256 of the stimulus on the right"),
-    ("response", "text", "", "Side chosen: left or right"),
-    ("chosen_condition", "text", "", "Condition chosen"),
-    ("target_condition", "text", "", "Condition whose choices the block counts"),
-    ("target_chosen", "integer", "", "1 when the target was chosen, else 0"),
-    ("correct", "text", "", "Empty: a preference has no right answer"),
-    ("rt", "number", "ms", "From the first frame that showed the pair to the choice"),
-    ("time_elapsed", "number", "ms", "From the start of the page's session to the choice"),
-    ("ended_on", "text", "", "What ended the trial: response"),
-    ("input", "text", "", "mouse, touch, pen or keyboard"),
-    ("scale", "number", "", "CSS pixels shown per stimulus pixel; 1 is native when device_pixel_ratio is 1"),
-    ("arrangement", "text", "", "How the two stimuli stood: beside or below each other"),
-    ("device_pixel_ratio", "number", "", "Device pixels per CSS pixel"),
-    ("viewport_width", "number", "CSS px", "Width of the window's inside"),
-    ("viewport_height", "number", "CSS px", "Height of the window's inside"),
-    ("refresh_hz", "number", "Hz", "Measured refresh rate of the display"),
-    ("hidden_ms", "number", "ms", "How long the page was hidden during the trial"),
-    ("reload_count", "integer", "", "How often the page had been reloaded"),
-    ("timestamp", "text", "ISO 8601", "When the browser had the answer, by its own clock"),
-    ("received_at", "text", "ISO 8601", "When the server committed the answer"),
-    ("payload_hash", "text", "", "SHA-256 of all that the browser sent; the chain of answers covers it"),
-];
+/// A session with its trials, and what its rows say of it.
+struct Taken {
+    columns: SessionColumns,
+    trials: Vec<PlannedTrial>,
+}
 
-/// One row for each answer to this version of a study, in the order they came.
+/// One row for each answer to the chosen versions, in the order they came.
 ///
 /// # Errors
 /// The store cannot be read.
-pub async fn responses_csv(store: &Store, study: &StudyDefinition) -> Result<String, StoreError> {
-    let config_hash = study.config_hash();
-    let rows = store.responses(&study.id, &config_hash).await?;
-    let sessions = store.sessions(&study.id, &config_hash).await?;
-    let sessions: HashMap<&str, &Session> = sessions.iter().map(|s| (s.session_id.as_str(), s)).collect();
+pub async fn responses_csv(store: &Store, selection: &Selection) -> Result<String, StoreError> {
+    let study = &selection.study;
+    let rows = store.answer_rows(&study.id, &selection.versions).await?;
     let mut answered: HashMap<&str, usize> = HashMap::new();
-    for (row, _) in &rows {
+    for row in &rows {
         *answered.entry(&row.session_id).or_default() += 1;
     }
+    let designs = designs(store, &study.id).await?;
+    let mut sessions = HashMap::new();
+    for session in store.sessions(&study.id, &selection.versions).await? {
+        let trials = store.trials(&session.session_id).await?;
+        let answers = answered.get(session.session_id.as_str()).copied().unwrap_or_default();
+        let most = if session.more { study.most_trials() } else { trials.len() };
+        let columns = SessionColumns {
+            subject_id: session.subject_id,
+            session_id: session.session_id.clone(),
+            study_id: session.study_id,
+            config_hash: session.version.clone(),
+            design_hash: designs.get(&session.version).cloned().unwrap_or_default(),
+            version: session.version,
+            status: match session.completed_at {
+                Some(_) => SessionStatus::Completed,
+                None => SessionStatus::InProgress,
+            },
+            percent_complete: 100.0 * answers as f64 / most.max(1) as f64,
+            slot: session.slot,
+            plan_seed: session.plan_seed,
+        };
+        sessions.insert(session.session_id, Taken { columns, trials });
+    }
+    let table = Rows::default();
     let mut out = String::new();
-    write_row(&mut out, CODEBOOK.iter().map(|column| column.0.to_owned()));
-    for (row, payload) in &rows {
-        let Some(session) = sessions.get(row.session_id.as_str()) else { continue };
-        let payload: Value =
-            payload.as_deref().and_then(|p| serde_json::from_str(p).ok()).unwrap_or_default();
-        let answered = answered.get(row.session_id.as_str()).copied().unwrap_or_default();
-        let cells = CODEBOOK.iter().map(|column| cell(column.0, study, session, row, &payload, answered));
-        write_row(&mut out, cells);
+    write_row(&mut out, table.names().to_vec());
+    for row in &rows {
+        let Some(taken) = sessions.get(&row.session_id) else { continue };
+        let Some(planned) = taken.trials.get(row.trial_index as usize) else { continue };
+        let payload = row.payload.as_deref().and_then(|payload| serde_json::from_str(payload).ok());
+        write_row(
+            &mut out,
+            table.cells(&Answered {
+                study,
+                session: &taken.columns,
+                trial: &planned.trial,
+                sha256: row.shown.iter().map(|(role, shown)| (*role, shown.sha256.as_str())).collect(),
+                answer: row.answer.as_deref().filter(|_| row.payload.is_some()),
+                payload: &payload.unwrap_or(Value::Null),
+                payload_hash: row.payload.as_ref().map(|payload| sha256_hex(payload.as_bytes())),
+                answer_hash: &row.answer_hash,
+                received_at: &row.received_at,
+                place: (row.chain, row.seq),
+            }),
+        );
     }
     Ok(out)
 }
 
-fn cell(
-    column: &str,
-    study: &StudyDefinition,
-    session: &Session,
-    row: &ResponseRow,
-    payload: &Value,
-    answered: usize,
-) -> String {
-    let planned = session.trials.get(row.trial_index as usize).map(|planned| &planned.trial);
-    let target = study.block(&row.block_id).map(|block| block.target.as_str()).unwrap_or_default();
-    match column {
-        "subject_id" => row.subject_id.clone(),
-        "session_id" => row.session_id.clone(),
-        "study_id" => session.study_id.clone(),
-        "config_hash" => session.config_hash.clone(),
-        "status" => if session.completed_at.is_some() { "completed" } else { "in progress" }.to_owned(),
-        "percent_complete" => (100.0 * answered as f64 / session.trials.len() as f64).to_string(),
-        "slot" => session.slot.to_string(),
-        "plan_seed" => session.plan_seed.clone(),
-        "trial_index" => row.trial_index.to_string(),
-        "block_id" => row.block_id.clone(),
-        "block_index" => planned.map(|t| t.block_index.to_string()).unwrap_or_default(),
-        "pair_id" => row.pair_id.clone(),
-        "pair_index" => planned.map(|t| t.item_index.to_string()).unwrap_or_default(),
-        "kind" => planned.map(|t| plain(&serde_json::json!(t.kind))).unwrap_or_default(),
-        "stimulus" => serde_json::json!([row.left_sha256, row.right_sha256]).to_string(),
-        "left_condition" => row.left_condition.clone(),
-        "right_condition" => row.right_condition.clone(),
-        "left_sha256" => row.left_sha256.clone(),
-        "right_sha256" => row.right_sha256.clone(),
-        "response" => row.choice.clone(),
-        "chosen_condition" => row.chosen_condition.clone(),
-        "target_condition" => target.to_owned(),
-        "target_chosen" => u8::from(row.chosen_condition == target).to_string(),
-        "correct" => String::new(),
-        "rt" => row.rt_ms.to_string(),
-        "ended_on" => "response".to_owned(),
-        "viewport_width" => plain(&payload["viewport"][0]),
-        "viewport_height" => plain(&payload["viewport"][1]),
-        "received_at" => row.received_at.clone(),
-        "payload_hash" => row.payload_hash.clone(),
-        from_browser => plain(&payload[from_browser]),
-    }
+/// Hash of the design of each version.
+async fn designs(store: &Store, study_id: &str) -> Result<HashMap<String, String>, StoreError> {
+    let versions = store.study_versions(study_id).await?;
+    Ok(versions.into_iter().map(|version| (version.version, version.design_hash)).collect())
 }
 
-/// A JSON value as a cell: texts bare, null empty.
-fn plain(value: &Value) -> String {
-    match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
-    }
-}
-
-/// The codebook: `column,type,unit,meaning`.
+/// The codebook: `column,type,unit,meaning,values`.
 pub fn codebook_csv() -> String {
     let mut out = String::new();
-    write_row(&mut out, ["column", "type", "unit", "meaning"].map(str::to_owned));
-    for (name, kind, unit, meaning) in CODEBOOK {
-        write_row(&mut out, [name, kind, unit, meaning].map(|s| (*s).to_owned()));
+    write_row(&mut out, ["column", "type", "unit", "meaning", "values"].map(str::to_owned));
+    for column in codebook() {
+        let values: Vec<String> =
+            column.values.iter().map(|v| format!("{}: {}", v.value, v.meaning)).collect();
+        write_row(&mut out, [column.name, column.kind, column.unit, column.meaning, values.join("; ")]);
     }
     out
 }

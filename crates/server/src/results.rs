@@ -1,35 +1,40 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
 use crate::export::write_row;
-use kelir_report::{Chain, StudyReport};
+use crate::selection::{Selection, SelectionError, VersionRef, With};
+use kelir_report::{Chain, DifferentStimulus, Fault, Participants, PooledVersion, Stimulus, StudyReport};
 use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
-use kelir_store::{Participants, Store, StoreError, StoredAnswers, StudyStimulus};
+use kelir_store::{Store, StoreError, StoredAnswers, StudyStimulus};
 use kelir_study::StudyDefinition;
 use kelir_study::analysis::{BlockSummary, conditions_scale, summarise};
-use kelir_study::answers::{Answers, Participant, blocks};
+use kelir_study::answers::{Answers, Participant, blocks, compares};
 use kelir_study::report::Report;
 use kelir_study::screening::screen;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
+use utoipa::ToSchema;
 
-pub use kelir_report::{Excluded, OtherVersion};
+pub use kelir_report::Excluded;
 
 /// The study that repeats the paper's survey, and so has the paper's own tests beside its own.
 const PAPER_STUDY: &str = "shadow-puppets";
 
-/// Results of one version of a study.
-#[derive(Clone, Debug, Serialize)]
+/// Results of one version of a study, or of several pooled by name.
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct StudyResults {
     /// Study's id.
     pub study: String,
     /// Study's title.
     pub title: String,
     /// Version of the study that these results are of.
-    pub config_hash: String,
+    pub version: String,
+    /// The versions whose answers are in, the one above first.
+    pub pooled: Vec<PooledVersion>,
+    /// What the pooled versions do not show alike.
+    pub different_stimuli: Vec<DifferentStimulus>,
     /// How many people take part.
     pub participants: Participants,
     /// Who is left out by the study's rules of screening, and why.
@@ -43,22 +48,22 @@ pub struct StudyResults {
     /// Why there is no scale.
     pub scale_note: Option<String>,
     /// What was shown, with how it was made and its measured error.
-    pub stimuli: Vec<StudyStimulus>,
+    pub stimuli: Vec<Stimulus>,
     /// Other versions of the study that have sessions; their answers are not in these results.
-    pub other_versions: Vec<OtherVersion>,
+    pub other_versions: Vec<PooledVersion>,
 }
 
-/// Computes the results of this version of a study from what is stored now.
+/// Computes the results of the chosen versions from what is stored now.
 ///
 /// # Errors
 /// The store cannot be read.
-pub async fn results(store: &Store, study: &StudyDefinition) -> Result<StudyResults, StoreError> {
-    let answers = read(store, study).await?;
-    results_of(store, study, &answers).await
+pub async fn results(store: &Store, selection: &Selection) -> Result<StudyResults, StoreError> {
+    let answers = read(store, selection).await?;
+    results_of(store, selection, &answers).await
 }
 
-async fn read(store: &Store, study: &StudyDefinition) -> Result<Arc<Answers>, StoreError> {
-    let mut stored = StoredAnswers::new(study);
+async fn read(store: &Store, selection: &Selection) -> Result<Arc<Answers>, StoreError> {
+    let mut stored = StoredAnswers::new(&selection.study, &selection.versions);
     store.read_on(&mut stored).await?;
     Ok(stored.answers())
 }
@@ -66,49 +71,67 @@ async fn read(store: &Store, study: &StudyDefinition) -> Result<Arc<Answers>, St
 /// The same from answers that have been read.
 pub(crate) async fn results_of(
     store: &Store,
-    study: &StudyDefinition,
+    selection: &Selection,
     answers: &Answers,
 ) -> Result<StudyResults, StoreError> {
-    let config_hash = study.config_hash();
-    let idle = Duration::from_secs(60 * u64::from(study.idle_minutes));
+    let study = &selection.study;
     let (everybody, judged, excluded) = screened(study, answers);
     let blocks = summarise(study, &judged);
     let (scale, scale_note) = match conditions_scale(study, &judged) {
         Ok(scale) => (Some(scale), None),
         Err(note) => (None, Some(note)),
     };
+    let (pooled, other_versions) = selection.gathered(store).await?;
+    let (stimuli, different_stimuli) = selection.shown(store).await?;
     Ok(StudyResults {
         study: study.id.clone(),
         title: study.title.clone(),
-        participants: store.participants(&study.id, &config_hash, idle).await?,
+        version: selection.version().to_owned(),
+        pooled,
+        different_stimuli,
+        participants: participants(store, selection).await?,
         blocks,
         blocks_with_excluded: (!excluded.is_empty()).then(|| summarise(study, &everybody)),
         scale,
         scale_note,
         excluded,
-        stimuli: store.study_stimuli(&study.id, &config_hash).await?,
-        other_versions: other_versions(store, &study.id, &config_hash).await?,
-        config_hash,
+        stimuli: stimuli.into_iter().map(stimulus).collect(),
+        other_versions,
     })
 }
 
-/// The full report of this version of a study from what is stored now. Resampling takes a while with many participants.
+/// How many people take part in the chosen versions.
+async fn participants(store: &Store, selection: &Selection) -> Result<Participants, StoreError> {
+    let counts = store.version_counts(&selection.study.id, selection.idle()).await?;
+    let of_versions = selection.versions.iter().filter_map(|version| counts.get(version));
+    Ok(of_versions.fold(Participants::default(), |sum, counts| Participants {
+        started: sum.started + counts.participants.started,
+        in_progress: sum.in_progress + counts.participants.in_progress,
+        completed: sum.completed + counts.participants.completed,
+    }))
+}
+
+fn stimulus(shown: StudyStimulus) -> Stimulus {
+    let StudyStimulus { item, condition, sha256, pixels_sha256, provenance, .. } = shown;
+    Stimulus { item, condition, sha256, pixels_sha256, provenance }
+}
+
+/// The full report of the chosen versions from what is stored now. Resampling takes a while with many participants.
 ///
 /// # Errors
 /// The store cannot be read.
-pub async fn report(store: &Store, study: &StudyDefinition) -> Result<StudyReport, StoreError> {
-    let answers = read(store, study).await?;
-    report_of(store, study, &answers).await
+pub async fn report(store: &Store, selection: &Selection) -> Result<StudyReport, StoreError> {
+    let answers = read(store, selection).await?;
+    report_of(store, selection, &answers).await
 }
 
 /// The same from answers that have been read.
 pub(crate) async fn report_of(
     store: &Store,
-    study: &StudyDefinition,
+    selection: &Selection,
     answers: &Answers,
 ) -> Result<StudyReport, StoreError> {
-    let config_hash = study.config_hash();
-    let idle = Duration::from_secs(60 * u64::from(study.idle_minutes));
+    let study = &selection.study;
     let (everybody, judged, excluded) = screened(study, answers);
     let report = Report::of(study, &judged);
     let (with_excluded, scale_with_excluded) = if excluded.is_empty() {
@@ -117,51 +140,53 @@ pub(crate) async fn report_of(
         let everybody = Report::of(study, &everybody);
         (Some(everybody.blocks), everybody.scale)
     };
-    let people = store.participants(&study.id, &config_hash, idle).await?;
-    let shown = store.study_stimuli(&study.id, &config_hash).await?.into_iter();
-    let chain = store.verify_chain().await?;
+    let (pooled, other_versions) = selection.gathered(store).await?;
+    let (stimuli, different_stimuli) = selection.shown(store).await?;
+    let chain = store.verify_chain(&study.id).await?;
+    let times = store.answer_times(&study.id, &selection.versions).await?;
     Ok(StudyReport {
         study: study.id.clone(),
         title: study.title.clone(),
         question: study.question.clone(),
+        version: selection.version().to_owned(),
+        pooled,
+        different_stimuli,
         kelir_version: env!("CARGO_PKG_VERSION").to_owned(),
-        answered: store.answer_times(&study.id, &config_hash).await?.map(|(first, last)| [first, last]),
-        participants: kelir_report::Participants {
-            started: people.started,
-            in_progress: people.in_progress,
-            completed: people.completed,
-        },
+        answered: times.map(|(first, last)| [first, last]),
+        participants: participants(store, selection).await?,
         screening: study.screening.clone(),
         report,
         blocks_with_excluded: with_excluded,
         scale_with_excluded,
         excluded,
-        stimuli: shown
-            .map(|StudyStimulus { pair, condition, sha256, provenance }| kelir_report::Stimulus {
-                pair,
-                condition,
-                sha256,
-                provenance,
-            })
-            .collect(),
-        other_versions: other_versions(store, &study.id, &config_hash).await?,
-        chain: Chain { rows: chain.rows, head: chain.head, broken: chain.broken, blanked: chain.blanked },
+        stimuli: stimuli.into_iter().map(stimulus).collect(),
+        other_versions,
+        chain: Chain {
+            rows: chain.rows,
+            head: chain.head,
+            faults: chain.faults.into_iter().map(fault).collect(),
+            blanked: chain.blanked,
+        },
         paper: taylor_cameron().ok().filter(|_| study.id == PAPER_STUDY),
         design: study.clone(),
-        config_hash,
     })
 }
 
+fn fault(kelir_store::Fault { chain, seq, what, note }: kelir_store::Fault) -> Fault {
+    Fault { chain, seq, what, note }
+}
+
 /// Choices as pwcmp reads them, one row a trial: `observer, session, scene, condition_A, condition_B, is_A_selected`, and
-/// `left_condition`, since A and B are the block's conditions in file order and never mean sides. By participants in the order
-/// they began and pairs in file order, without the excluded and without catch blocks.
+/// `left_condition` (of trials one after the other: the first), since A and B are the block's conditions in file order and never mean sides.
+/// By participants in the order they began and items in file order, without the excluded, catch blocks and adaptive ones.
 ///
 /// # Errors
 /// The store cannot be read.
-pub async fn pairs_csv(store: &Store, study: &StudyDefinition) -> Result<String, StoreError> {
-    let answers = read(store, study).await?;
+pub async fn pairs_csv(store: &Store, selection: &Selection) -> Result<String, StoreError> {
+    let study = &selection.study;
+    let answers = read(store, selection).await?;
     let (_, judged, _) = screened(study, &answers);
-    let sessions = store.sessions(&study.id, &study.config_hash()).await?;
+    let sessions = store.sessions(&study.id, &selection.versions).await?;
     let observers: HashMap<&str, &str> =
         sessions.iter().map(|s| (s.session_id.as_str(), s.subject_id.as_str())).collect();
     let mut out = String::new();
@@ -171,28 +196,18 @@ pub async fn pairs_csv(store: &Store, study: &StudyDefinition) -> Result<String,
     for participant in judged {
         let session = &*participant.session_id;
         let observer = observers.get(session).copied().unwrap_or_default();
-        for (block, pairs) in blocks(study).filter(|(block, _)| !block.catch) {
+        for (block, items) in blocks(study).filter(|(block, _)| compares(block)) {
             let [a, b] = &block.conditions;
-            for given in participant.answers_to(&pairs) {
-                let pair = &block.items[(given.item - pairs.start) as usize];
+            for given in participant.answers_to(&items) {
+                let item = &block.items[(given.item - items.start) as usize];
                 let chose = |target: bool| if target { block.target.as_str() } else { block.other() };
                 let selected = if chose(given.chose_target) == a { "1" } else { "0" };
-                let left = chose(given.chose_target == given.chose_left);
-                write_row(&mut out, [observer, session, &pair.id, a, b, selected, left].map(str::to_owned));
+                let first = chose(given.chose_target == given.chose_first);
+                write_row(&mut out, [observer, session, &item.id, a, b, selected, first].map(str::to_owned));
             }
         }
     }
     Ok(out)
-}
-
-async fn other_versions(
-    store: &Store,
-    study_id: &str,
-    config_hash: &str,
-) -> Result<Vec<OtherVersion>, StoreError> {
-    let versions = store.sessions_by_version(study_id).await?.into_iter();
-    let other = versions.filter(|(hash, _)| hash != config_hash);
-    Ok(other.map(|(config_hash, sessions)| OtherVersion { config_hash, sessions }).collect())
 }
 
 /// Everybody who answered, those whom no rule leaves out, and the others with the reasons; each in the order they began.
@@ -228,48 +243,46 @@ pub enum ResultsError {
         /// The studies there are.
         known: Vec<String>,
     },
+    /// The versions cannot be chosen.
+    #[error(transparent)]
+    Selection(#[from] SelectionError),
     /// The data cannot be read.
     #[error(transparent)]
     Store(#[from] StoreError),
 }
 
-/// The results of a study's latest version, from a data folder; a server may be using it at the same time.
+/// The full report of chosen versions of a study, from a data folder; a server may be using it at the same time.
+///
+/// # Errors
+/// There is no such data folder, study or version, or it cannot be read.
+pub async fn report_of_study(
+    data: &Path,
+    study: &str,
+    version: &VersionRef,
+    with: &With,
+) -> Result<StudyReport, ResultsError> {
+    let store = open_study(data, study).await?;
+    let report = match Selection::of(&store, study, None, version, with).await {
+        Ok(selection) => report(&store, &selection).await.map_err(ResultsError::from),
+        Err(error) => Err(error.into()),
+    };
+    store.close().await;
+    report
+}
+
+/// The store of a data folder that a study was served from.
 ///
 /// # Errors
 /// There is no such data folder or study, or it cannot be read.
-pub async fn of_study(data: &Path, study: &str) -> Result<StudyResults, ResultsError> {
-    let (store, study) = open_study(data, study).await?;
-    let results = results(&store, &study).await;
-    store.close().await;
-    Ok(results?)
-}
-
-/// The full report of a study's latest version, from a data folder.
-///
-/// # Errors
-/// As [`of_study`].
-pub async fn report_of_study(data: &Path, study: &str) -> Result<StudyReport, ResultsError> {
-    let (store, study) = open_study(data, study).await?;
-    let report = report(&store, &study).await;
-    store.close().await;
-    Ok(report?)
-}
-
-/// A data folder's store, and the latest version of a study in it.
-///
-/// # Errors
-/// As [`of_study`].
-pub async fn open_study(data: &Path, study: &str) -> Result<(Store, StudyDefinition), ResultsError> {
+pub async fn open_study(data: &Path, study: &str) -> Result<Store, ResultsError> {
     if !data.join("kelir.sqlite").is_file() {
         return Err(ResultsError::NoData(data.to_owned()));
     }
     let store = Store::open(data).await?;
-    match store.study_versions(study).await?.into_iter().next() {
-        Some(version) => Ok((store, version.study)),
-        None => {
-            let known = store.study_ids().await?;
-            store.close().await;
-            Err(ResultsError::UnknownStudy { study: study.to_owned(), known })
-        }
+    let known = store.study_ids().await?;
+    if known.iter().any(|known| known == study) {
+        return Ok(store);
     }
+    store.close().await;
+    Err(ResultsError::UnknownStudy { study: study.to_owned(), known })
 }
