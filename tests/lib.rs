@@ -77,6 +77,30 @@ impl Server {
         server
     }
 
+    /// Starts on a folder of [`small_data`] and waits until `small` can be taken.
+    pub fn start_small(data: &Path) -> Self {
+        let server = Self::start(data, false);
+        server.wait("/api/v1/studies/small");
+        server
+    }
+
+    /// Signs in with the password beside the data; answers the cookie.
+    pub fn sign_in(&self) -> String {
+        let password = std::fs::read_to_string(self.data.join("researcher-password")).unwrap();
+        let signed = ureq::post(format!("{}/api/v1/auth/session", self.base))
+            .send_json(serde_json::json!({ "password": password.trim() }))
+            .unwrap();
+        signed.headers()["set-cookie"].to_str().unwrap().split(';').next().unwrap().to_owned()
+    }
+
+    /// A GET as a researcher who is signed in: its text as JSON where it is any.
+    pub fn research(&self, cookie: &str, path: &str) -> Value {
+        let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
+        let text = agent.get(format!("{}{path}", self.base)).header("Cookie", cookie).call().unwrap();
+        let text = text.into_body().read_to_string().unwrap();
+        serde_json::from_str(&text).unwrap_or(Value::String(text))
+    }
+
     fn wait(&self, path: &str) {
         let begun = Instant::now();
         loop {
@@ -151,6 +175,102 @@ pub fn browser(script: &str, argument: &Value) -> Value {
     let text = String::from_utf8(out.stdout).unwrap();
     assert!(out.status.success(), "{script} failed:\n{text}");
     serde_json::from_str(text.trim_end().lines().last().expect("output")).unwrap()
+}
+
+/// A participant's session at a server.
+pub struct Taking<'a> {
+    server: &'a Server,
+    /// Its id.
+    pub id: String,
+    /// Its secret.
+    pub token: String,
+    /// The state as last told.
+    pub state: Value,
+}
+
+impl<'a> Taking<'a> {
+    /// Opens a session of a study and consents.
+    pub fn begin(server: &'a Server, study: &str, who: &str) -> Taking<'a> {
+        let body = serde_json::json!({ "params": { "PROLIFIC_PID": who }, "display": {} });
+        let (status, begun) = server.call("POST", &format!("/api/v1/studies/{study}/sessions"), None, &body);
+        assert_eq!(status, 201, "{begun}");
+        let text = |key: &str| begun[key].as_str().unwrap().to_owned();
+        let (id, token) = (text("session_id"), text("token"));
+        let (status, state) =
+            server.call("POST", &format!("/api/v1/sessions/{id}/consent"), Some(&token), &Value::Null);
+        assert_eq!(status, 200, "{state}");
+        Taking { server, id, token, state }
+    }
+
+    /// Goes on with a session that was begun before.
+    pub fn resume(server: &'a Server, id: &str, token: &str) -> Taking<'a> {
+        let mut taking = Taking { server, id: id.to_owned(), token: token.to_owned(), state: Value::Null };
+        let (status, state) = taking.call("GET", "", &Value::Null);
+        assert_eq!(status, 200, "{state}");
+        taking.state = state;
+        taking
+    }
+
+    /// A request below the session's address.
+    pub fn call(&self, method: &str, path: &str, body: &Value) -> (u16, Value) {
+        self.server.call(method, &format!("/api/v1/sessions/{}{path}", self.id), Some(&self.token), body)
+    }
+
+    /// Answers a trial as its page does.
+    pub fn answer(&self, trial: usize, choice: &str, rt: f64) -> (u16, Value) {
+        let body = serde_json::json!({
+            "choice": choice, "rt": rt, "onset": 100.0, "time_elapsed": 5000, "trial_type": "test", "plugin_version": "1",
+            "input": "keyboard", "scale": 1.0, "device_pixel_ratio": 1.0, "viewport": [1280, 800], "refresh_hz": 60.0,
+            "reload_count": 0, "timestamp": "2026-11-28T10:30:00.000Z",
+        });
+        self.call("PUT", &format!("/trials/{trial}"), &body)
+    }
+
+    /// Finishes; answers the code.
+    pub fn finish(&self) -> String {
+        let (status, done) = self.call("POST", "/completion", &Value::Null);
+        assert_eq!(status, 200, "{done}");
+        done["completion_code"].as_str().unwrap().to_owned()
+    }
+}
+
+/// Someone takes a study to its end with these choices, in the order of the trials.
+pub fn take(server: &Server, study: &str, who: &str, choices: &[&str]) -> String {
+    let taking = Taking::begin(server, study, who);
+    for (trial, choice) in choices.iter().enumerate() {
+        let (status, answer) = taking.answer(trial, choice, 700.0 + 10.0 * trial as f64);
+        assert_eq!(status, 200, "{answer}");
+    }
+    taking.finish();
+    taking.id
+}
+
+/// A data folder with small studies alone, which render in a moment: `small` (two stills, a catch trial, an animation), and the built-in one
+/// hidden by one like it.
+pub fn small_data() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for part in ["studies", "scenes", "puppets"] {
+        copy(&fixture("answered").join(part), folder.path());
+    }
+    folder
+}
+
+/// A data folder that the program of 944eaa2 wrote.
+pub fn fixture(name: &str) -> PathBuf {
+    root().join("tests/fixtures/944eaa2").join(name)
+}
+
+/// Copies a folder into another.
+pub fn copy(from: &Path, into: &Path) {
+    assert!(Command::new("cp").arg("-a").arg(from).arg(into).status().unwrap().success());
+}
+
+/// Changes a text in a file of a data folder; it must be there.
+pub fn edit(folder: &Path, file: &str, from: &str, to: &str) {
+    let path = folder.join(file);
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{from} in {file}");
+    std::fs::write(path, text.replace(from, to)).unwrap();
 }
 
 /// A data folder with the built-in study's stimuli, made once for the whole test run and copied for each test.

@@ -7,3 +7,4 @@ mod film;
 mod invariants;
 mod report;
 mod survey;
+mod versions;

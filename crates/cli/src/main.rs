@@ -37,6 +37,11 @@ enum Command {
     Stats(commands::stats::Args),
     /// Write a study's report: one HTML file, or Markdown with its figures.
     Report(commands::report::Args),
+    /// Write a study's answers as tables.
+    Export(commands::export::Args),
+    /// Prove that the stored answers are what was written.
+    #[command(subcommand)]
+    Chain(commands::chain::Command),
     /// How many participants a study needs: simulated observers take it and are judged by its report.
     Power(commands::power::Args),
     /// A published result, computed again, with what it left out.
@@ -73,6 +78,8 @@ fn main() -> ExitCode {
         Command::Bench(command) => commands::bench::run(command),
         Command::Stats(args) => commands::stats::run(args),
         Command::Report(args) => commands::report::run(args),
+        Command::Export(args) => commands::export::run(&args),
+        Command::Chain(command) => commands::chain::run(command),
         Command::Power(args) => commands::power::run(&args),
         Command::Paper(args) => commands::paper::run(args),
     };

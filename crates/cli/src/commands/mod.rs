@@ -2,7 +2,9 @@
 
 pub mod animate;
 pub mod bench;
+pub mod chain;
 mod drawing;
+pub mod export;
 pub mod paper;
 pub mod power;
 pub mod render;
@@ -10,4 +12,5 @@ pub mod report;
 pub mod scene;
 pub mod serve;
 pub mod stats;
+mod stored;
 pub mod study;

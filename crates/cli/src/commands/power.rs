@@ -48,7 +48,7 @@ fn text(found: &Power) -> String {
     let mut parts = vec![format!(
         "{} ({}): {} simulated studies of each size, seed {}, α = {}, wanted power {}; a rate is known to ±{:.2} or better",
         found.study,
-        &found.config_hash[..12],
+        &found.design_hash[..12],
         found.simulations,
         found.seed,
         found.alpha,

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use kelir_render::file::write_atomic;
 use kelir_report::{Document, Figures, html, markdown};
 
-use super::stats::study_report;
+use super::stored::Stored;
 use crate::bad_input;
 
 /// Arguments of `kelir report`.
@@ -14,9 +14,8 @@ use crate::bad_input;
 pub struct Args {
     /// Id of the study, as in its address.
     study: String,
-    /// The server's data folder; it may be running.
-    #[arg(long, default_value = "data")]
-    data: PathBuf,
+    #[command(flatten)]
+    stored: Stored,
     /// report.html: one file with everything in it. report.md: Markdown, with its figures in the folder report-figures beside it.
     #[arg(short, long)]
     output: PathBuf,
@@ -38,7 +37,7 @@ pub fn run(args: Args) -> Result<()> {
             folder.display()
         )));
     }
-    let document = Document::of(&study_report(&args.data, &args.study)?);
+    let document = Document::of(&args.stored.report(&args.study)?);
     match kind {
         Kind::Html => write(&args.output, html(&document).as_bytes()),
         Kind::Markdown { figures } => {

@@ -1,13 +1,11 @@
 //! `kelir stats STUDY` and `kelir stats ttest`.
 
-use std::path::{Path, PathBuf};
-
 use anyhow::Result;
 use clap::{Subcommand, ValueEnum};
-use kelir_report::{Document, StudyReport};
-use kelir_server::results::{self, ResultsError};
+use kelir_report::Document;
 use kelir_stats::inference::{TTest, t_test_from_counts};
 
+use super::stored::Stored;
 use crate::bad_input;
 use crate::output::{csv, print, table};
 
@@ -20,9 +18,8 @@ pub struct Args {
     /// Id of the study, as in its address.
     #[arg(required = true)]
     study: Option<String>,
-    /// The server's data folder; it may be running.
-    #[arg(long, default_value = "data")]
-    data: PathBuf,
+    #[command(flatten)]
+    stored: Stored,
     #[arg(long, value_enum, default_value = "text")]
     format: ReportFormat,
 }
@@ -77,7 +74,7 @@ pub fn run(args: Args) -> Result<()> {
             print_test(&test, format)
         }
         (None, Some(study)) => {
-            let report = study_report(&args.data, &study)?;
+            let report = args.stored.report(&study)?;
             match args.format {
                 ReportFormat::Text => print(&kelir_report::text(&Document::of(&report))),
                 ReportFormat::Json => print(&serde_json::to_string_pretty(&report)?),
@@ -86,15 +83,6 @@ pub fn run(args: Args) -> Result<()> {
         }
         (None, None) => unreachable!("clap asks for a study or a test"),
     }
-}
-
-/// The full report of a study's latest version from a data folder; an unknown folder or study is bad input.
-pub(super) fn study_report(data: &Path, study: &str) -> Result<StudyReport> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    runtime.block_on(results::report_of_study(data, study)).map_err(|error| match error {
-        ResultsError::Store(_) => error.into(),
-        _ => bad_input(error),
-    })
 }
 
 fn print_test(test: &TTest, format: Format) -> Result<()> {

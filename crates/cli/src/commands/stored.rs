@@ -1,0 +1,67 @@
+//! What the commands share that read a server's data folder: which study, and which of its versions.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use kelir_report::StudyReport;
+use kelir_server::results::{self, ResultsError};
+use kelir_server::{Selection, SelectionError, Store, VersionRef, With};
+
+use crate::bad_input;
+
+/// A study in a data folder.
+#[derive(clap::Args)]
+pub struct Stored {
+    /// The server's data folder; it may be running.
+    #[arg(long, default_value = "data")]
+    pub data: PathBuf,
+    #[command(flatten)]
+    pub versions: Versions,
+}
+
+/// Which versions of a study.
+#[derive(clap::Args)]
+pub struct Versions {
+    /// Version of the study: its hash, the beginning of it (8 digits or more), or `current`, the one served last.
+    /// `kelir study versions` lists them.
+    #[arg(long, default_value = "current", value_parser = parse::<VersionRef>)]
+    pub version: VersionRef,
+    /// Versions whose answers count with that one's, separated by commas, or `all`.
+    #[arg(long, default_value = "", hide_default_value = true, value_parser = parse::<With>)]
+    pub with: With,
+}
+
+fn parse<T: std::str::FromStr<Err = SelectionError>>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|error: SelectionError| error.to_string())
+}
+
+/// Runs what reads a data folder to its end.
+pub fn block_on<T>(work: impl Future<Output = Result<T>>) -> Result<T> {
+    tokio::runtime::Builder::new_current_thread().enable_all().build()?.block_on(work)
+}
+
+/// An unknown folder, study or version is bad input; a failing disk is not.
+pub fn results_error(error: ResultsError) -> anyhow::Error {
+    match error {
+        ResultsError::Store(_) | ResultsError::Selection(SelectionError::Store(_)) => error.into(),
+        _ => bad_input(error),
+    }
+}
+
+impl Stored {
+    /// The full report of the versions asked for.
+    pub fn report(&self, study: &str) -> Result<StudyReport> {
+        let Versions { version, with } = &self.versions;
+        block_on(async {
+            results::report_of_study(&self.data, study, version, with).await.map_err(results_error)
+        })
+    }
+
+    /// The store of the data folder, with the versions asked for.
+    pub async fn open(&self, study: &str) -> Result<(Store, Selection)> {
+        let store = results::open_study(&self.data, study).await.map_err(results_error)?;
+        let Versions { version, with } = &self.versions;
+        let selection = Selection::of(&store, study, None, version, with).await;
+        Ok((store, selection.map_err(|error| results_error(error.into()))?))
+    }
+}
