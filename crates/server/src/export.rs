@@ -2,6 +2,7 @@
 
 use kelir_store::{ResponseRow, Session, Store, StoreError};
 use kelir_study::StudyDefinition;
+use kelir_study::schema::Column;
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -128,6 +129,18 @@ fn plain(value: &Value) -> String {
         Value::String(text) => text.clone(),
         other => other.to_string(),
     }
+}
+
+/// What each column is.
+pub fn codebook() -> Vec<Column> {
+    let column = |(name, kind, unit, meaning): &(&str, &str, &str, &str)| Column {
+        name: (*name).to_owned(),
+        kind: (*kind).to_owned(),
+        unit: (*unit).to_owned(),
+        meaning: (*meaning).to_owned(),
+        values: Vec::new(),
+    };
+    CODEBOOK.iter().map(column).collect()
 }
 
 /// The codebook: `column,type,unit,meaning`.

@@ -1,10 +1,10 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
 use crate::export::write_row;
-use kelir_report::{Chain, StudyReport};
+use kelir_report::{Chain, Participants, Stimulus, StudyReport};
 use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
-use kelir_store::{Participants, Store, StoreError, StoredAnswers, StudyStimulus};
+use kelir_store::{Store, StoreError, StoredAnswers};
 use kelir_study::StudyDefinition;
 use kelir_study::analysis::{BlockSummary, conditions_scale, summarise};
 use kelir_study::answers::{Answers, Participant, blocks};
@@ -15,6 +15,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
+use utoipa::ToSchema;
 
 pub use kelir_report::{Excluded, OtherVersion};
 
@@ -22,7 +23,7 @@ pub use kelir_report::{Excluded, OtherVersion};
 const PAPER_STUDY: &str = "shadow-puppets";
 
 /// Results of one version of a study.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct StudyResults {
     /// Study's id.
     pub study: String,
@@ -43,7 +44,7 @@ pub struct StudyResults {
     /// Why there is no scale.
     pub scale_note: Option<String>,
     /// What was shown, with how it was made and its measured error.
-    pub stimuli: Vec<StudyStimulus>,
+    pub stimuli: Vec<Stimulus>,
     /// Other versions of the study that have sessions; their answers are not in these results.
     pub other_versions: Vec<OtherVersion>,
 }
@@ -80,13 +81,13 @@ pub(crate) async fn results_of(
     Ok(StudyResults {
         study: study.id.clone(),
         title: study.title.clone(),
-        participants: store.participants(&study.id, &config_hash, idle).await?,
+        participants: counted(store.participants(&study.id, &config_hash, idle).await?),
         blocks,
         blocks_with_excluded: (!excluded.is_empty()).then(|| summarise(study, &everybody)),
         scale,
         scale_note,
         excluded,
-        stimuli: store.study_stimuli(&study.id, &config_hash).await?,
+        stimuli: shown(store, &study.id, &config_hash).await?,
         other_versions: other_versions(store, &study.id, &config_hash).await?,
         config_hash,
     })
@@ -117,8 +118,6 @@ pub(crate) async fn report_of(
         let everybody = Report::of(study, &everybody);
         (Some(everybody.blocks), everybody.scale)
     };
-    let people = store.participants(&study.id, &config_hash, idle).await?;
-    let shown = store.study_stimuli(&study.id, &config_hash).await?.into_iter();
     let chain = store.verify_chain().await?;
     Ok(StudyReport {
         study: study.id.clone(),
@@ -126,24 +125,13 @@ pub(crate) async fn report_of(
         question: study.question.clone(),
         kelir_version: env!("CARGO_PKG_VERSION").to_owned(),
         answered: store.answer_times(&study.id, &config_hash).await?.map(|(first, last)| [first, last]),
-        participants: kelir_report::Participants {
-            started: people.started,
-            in_progress: people.in_progress,
-            completed: people.completed,
-        },
+        participants: counted(store.participants(&study.id, &config_hash, idle).await?),
         screening: study.screening.clone(),
         report,
         blocks_with_excluded: with_excluded,
         scale_with_excluded,
         excluded,
-        stimuli: shown
-            .map(|StudyStimulus { pair, condition, sha256, provenance }| kelir_report::Stimulus {
-                pair,
-                condition,
-                sha256,
-                provenance,
-            })
-            .collect(),
+        stimuli: shown(store, &study.id, &config_hash).await?,
         other_versions: other_versions(store, &study.id, &config_hash).await?,
         chain: Chain { rows: chain.rows, head: chain.head, broken: chain.broken, blanked: chain.blanked },
         paper: taylor_cameron().ok().filter(|_| study.id == PAPER_STUDY),
@@ -183,6 +171,24 @@ pub async fn pairs_csv(store: &Store, study: &StudyDefinition) -> Result<String,
         }
     }
     Ok(out)
+}
+
+/// The store's count as reports have it.
+pub(crate) fn counted(people: kelir_store::Participants) -> Participants {
+    let kelir_store::Participants { started, in_progress, completed } = people;
+    Participants { started, in_progress, completed }
+}
+
+/// What a version shows, as reports have it.
+async fn shown(store: &Store, study_id: &str, config_hash: &str) -> Result<Vec<Stimulus>, StoreError> {
+    let stored = store.study_stimuli(study_id, config_hash).await?.into_iter();
+    let stimulus = |kelir_store::StudyStimulus { pair, condition, sha256, provenance }| Stimulus {
+        pair,
+        condition,
+        sha256,
+        provenance,
+    };
+    Ok(stored.map(stimulus).collect())
 }
 
 async fn other_versions(

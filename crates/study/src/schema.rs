@@ -53,6 +53,11 @@ impl Record {
         Record { schema: json(schema), components: components.collect() }
     }
 
+    /// A JSON schema as it is, and the components by which its `$ref`s are resolved.
+    pub fn of_json(schema: Value, components: Map<String, Value>) -> Record {
+        Record { schema, components }
+    }
+
     /// Everything in `value` that the schema does not allow, in the order of the schema's walk; empty when all is right.
     ///
     /// JSON Schema 2020-12, the part of it that Rust types come to: `type`, `enum`, `const`, bounds of numbers, lengths of texts (in
