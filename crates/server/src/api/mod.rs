@@ -5,6 +5,7 @@ mod answers;
 mod auth;
 mod lists;
 mod problem;
+mod refusals;
 mod sessions;
 mod studies;
 mod versions;
@@ -25,4 +26,4 @@ pub use studies::{
 };
 pub use versions::{Pooling, VersionRef, With};
 
-pub(crate) use problem::{refusals, responses};
+pub(crate) use refusals::{refusals, responses};

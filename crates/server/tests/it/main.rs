@@ -8,3 +8,4 @@ mod openapi;
 mod placeholder;
 mod research;
 mod taking_part;
+mod versions;
