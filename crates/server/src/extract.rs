@@ -112,11 +112,7 @@ impl<T: IntoParams + DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Q
         let known = T::into_params(|| Some(ParameterIn::Query));
         let (mut given, mut errors) = (Map::new(), Vec::new());
         for (name, text) in pairs {
-            let wrong = |rule: String| FieldError {
-                pointer: format!("/{name}"),
-                value: Some(text.as_str().into()),
-                rule,
-            };
+            let wrong = |rule: String| FieldError::at(&name, text.as_str(), rule);
             match known.iter().find(|parameter| parameter.name == name) {
                 None => {
                     let known: Vec<&str> = known.iter().map(|parameter| parameter.name.as_str()).collect();

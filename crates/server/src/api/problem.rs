@@ -163,8 +163,7 @@ impl Problem {
 
     /// One parameter that breaks a rule.
     pub fn parameter(name: &str, value: &str, rule: impl Into<String>) -> Box<Problem> {
-        let error = FieldError { pointer: format!("/{name}"), value: Some(value.into()), rule: rule.into() };
-        Problem::fields(ProblemCode::InvalidParameter, vec![error])
+        Problem::fields(ProblemCode::InvalidParameter, vec![FieldError::at(name, value, rule)])
     }
 
     pub(crate) fn not_found(what: &str) -> Box<Problem> {

@@ -104,7 +104,7 @@ async fn bad_parameters_are_named() {
         ("studies?limit=%2B1", vec!["/limit"]),
         ("studies?limit=1&limit=2", vec!["/limit"]),
         ("studies?cursor=00", vec!["/cursor"]),
-        ("studies?limt=5&limit=-1", vec!["/limt", "/limit"]),
+        ("studies?limt=5&limit=-1&a/b=1", vec!["/limt", "/limit", "/a~1b"]),
         ("studies/shadow-puppets/versions/curent/results", vec!["/version"]),
         ("studies/shadow-puppets/versions/0123456/results", vec!["/version"]),
         ("studies/shadow-puppets/versions/current/results?with=some", vec!["/with"]),
