@@ -42,7 +42,7 @@ fn answer(server: &Server) {
             }
         }
         if person < 32 {
-            assert_eq!(server.call("POST", &format!("{path}/complete"), token, &Value::Null).0, 200);
+            assert_eq!(server.call("POST", &format!("{path}/completion"), token, &Value::Null).0, 200);
         }
     }
 }
@@ -60,7 +60,7 @@ fn holds(numbers: &[f64], wanted: f64) -> bool {
 /// A download as the researcher: signs in with the password beside the data.
 fn download(server: &Server, path: &str) -> String {
     let password = std::fs::read_to_string(server.data.join("researcher-password")).unwrap();
-    let login = ureq::post(format!("{}/api/v1/login", server.base))
+    let login = ureq::post(format!("{}/api/v1/auth/session", server.base))
         .send_json(json!({"password": password.trim()}))
         .unwrap();
     let cookie = login.headers()["set-cookie"].to_str().unwrap().split(';').next().unwrap().to_owned();
@@ -143,10 +143,10 @@ fn a_report_says_what_the_answers_say_in_every_form() {
 
     // The server hands out the very same page, and Markdown with its figures within.
     assert!(
-        download(&server, &format!("/api/v1/admin/studies/{STUDY}/report.html")) == page,
+        download(&server, &format!("/api/v1/studies/{STUDY}/versions/current/report.html")) == page,
         "the server says the same"
     );
-    let embedded = download(&server, &format!("/api/v1/admin/studies/{STUDY}/report.md"));
+    let embedded = download(&server, &format!("/api/v1/studies/{STUDY}/versions/current/report.md"));
     let markdown = write("report.md");
     let figures = ["choices", "scale", "response-times", "errors"];
     assert_eq!(embedded.matches("data:image/svg+xml;base64,").count(), figures.len());

@@ -186,7 +186,7 @@ fn a_killed_server_loses_nothing_that_it_acknowledged() {
     let choices: Vec<&str> = rows.iter().map(|row| row["choice"].as_str().unwrap()).collect();
     assert_eq!(choices, ["left", "right", "left", "right", "left"]);
     let (status, done) =
-        server.call("POST", &format!("/api/v1/sessions/{id}/complete"), Some(&token), &Value::Null);
+        server.call("POST", &format!("/api/v1/sessions/{id}/completion"), Some(&token), &Value::Null);
     assert_eq!(status, 200, "{done}");
     assert_eq!(sql(&database(data.path()), "PRAGMA integrity_check")[0]["integrity_check"], "ok");
 }
@@ -197,8 +197,8 @@ fn no_code_before_every_trial_is_stored_and_no_answer_changes() {
     let server = Server::start(data.path(), true);
     let (id, token) = join(&server);
     let (status, body) =
-        server.call("POST", &format!("/api/v1/sessions/{id}/complete"), Some(&token), &Value::Null);
-    assert_eq!((status, &body["error"]["code"]), (409, &json!("incomplete")), "{body}");
+        server.call("POST", &format!("/api/v1/sessions/{id}/completion"), Some(&token), &Value::Null);
+    assert_eq!((status, &body["code"]), (409, &json!("incomplete")), "{body}");
     let path = format!("/api/v1/sessions/{id}/trials/0");
     assert_eq!(server.call("PUT", &path, Some(&token), &answer("left")).0, 200);
     assert_eq!(
@@ -207,7 +207,7 @@ fn no_code_before_every_trial_is_stored_and_no_answer_changes() {
         "the same answer again is acknowledged"
     );
     let (status, body) = server.call("PUT", &path, Some(&token), &answer("right"));
-    assert_eq!((status, &body["error"]["code"]), (409, &json!("already_answered")), "{body}");
+    assert_eq!((status, &body["code"]), (409, &json!("already_answered")), "{body}");
     let rows = sql(&database(data.path()), "SELECT choice FROM responses");
     assert_eq!(rows, [json!({"choice": "left"})]);
     // Wrong requests: one shape, no stack, no SQL.
@@ -215,14 +215,15 @@ fn no_code_before_every_trial_is_stored_and_no_answer_changes() {
         ("PUT", path.as_str(), Some("not-the-token"), answer("left"), 401),
         ("PUT", path.as_str(), Some(token.as_str()), json!({"choice": "middle"}), 422),
         ("GET", "/api/v1/studies/none", None, Value::Null, 404),
-        ("GET", "/api/v1/admin/studies", None, Value::Null, 401),
+        ("GET", "/api/v1/studies", None, Value::Null, 401),
         ("DELETE", "/api/v1/studies/shadow-puppets", None, Value::Null, 405),
     ] {
         let (status, answer) = server.call(method, path, token, &body);
         assert!(
             (400..500).contains(&status)
-                && answer["error"]["code"].is_string()
-                && answer["error"]["message"].is_string(),
+                && answer["status"] == status
+                && answer["code"].is_string()
+                && answer["detail"].is_string(),
             "{method} {path}: {status} {answer}"
         );
         assert_eq!(status, expected, "{method} {path}: {answer}");

@@ -111,7 +111,7 @@ fn prose(text: &str) -> String {
 }
 
 /// Text that HTML shows as it is, in elements and in quoted attributes.
-pub(crate) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

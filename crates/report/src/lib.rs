@@ -18,7 +18,7 @@ mod text;
 
 pub use csv::csv;
 pub use document::{Cell, Column, Document, Figure, Piece, Row, Section, Table};
-pub use html::html;
+pub use html::{escaped, html};
 pub use markdown::{Figures, Markdown, markdown};
 pub use numbers::{Number, Sample, numbers};
 pub use text::text;

@@ -1,6 +1,6 @@
 //! What the handlers share.
 
-use crate::error::ApiError;
+use crate::api::{Problem, ProblemCode};
 use crate::library::Library;
 use crate::limiter::Limiter;
 use crate::making::{Maker, Making, StimulusMap};
@@ -9,6 +9,7 @@ use kelir_study::StudyDefinition;
 use kelir_study::answers::Answers;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, PoisonError, RwLock};
+use std::time::Duration;
 use tokio::sync::Semaphore;
 
 pub(crate) struct App {
@@ -70,8 +71,8 @@ impl App {
         }
     }
 
-    pub(crate) fn study(&self, id: &str) -> Result<&LoadedStudy, ApiError> {
-        self.studies.get(id).ok_or_else(|| ApiError::not_found("study"))
+    pub(crate) fn study(&self, id: &str) -> Result<&LoadedStudy, Box<Problem>> {
+        self.studies.get(id).ok_or_else(|| Problem::not_found("study"))
     }
 
     /// The definition that a session began with.
@@ -79,7 +80,7 @@ impl App {
         &self,
         study_id: &str,
         config_hash: &str,
-    ) -> Result<Arc<StudyDefinition>, ApiError> {
+    ) -> Result<Arc<StudyDefinition>, Box<Problem>> {
         if let Some(loaded) = self.studies.get(study_id)
             && loaded.config_hash == config_hash
         {
@@ -91,7 +92,7 @@ impl App {
         let versions = self.store.study_versions(study_id).await?;
         let version = versions.into_iter().find(|v| v.config_hash == config_hash);
         let study = Arc::new(
-            version.ok_or_else(|| ApiError::internal("a session's study version is not stored"))?.study,
+            version.ok_or_else(|| Problem::internal("a session's study version is not stored"))?.study,
         );
         let mut versions = self.versions.write().unwrap_or_else(PoisonError::into_inner);
         versions.insert(config_hash.to_owned(), study.clone());
@@ -100,6 +101,11 @@ impl App {
 }
 
 impl LoadedStudy {
+    /// How long a session may be silent and still hold its place.
+    pub(crate) fn idle(&self) -> Duration {
+        Duration::from_secs(60 * u64::from(self.study.idle_minutes))
+    }
+
     /// Every answer there is now.
     pub(crate) async fn answers(&self, store: &Store) -> Result<Arc<Answers>, StoreError> {
         let mut stored = self.answers.lock().await;
@@ -116,20 +122,19 @@ impl LoadedStudy {
     }
 
     /// The stimuli, or the answer that says they are not ready.
-    pub(crate) fn ready(&self) -> Result<Arc<StimulusMap>, ApiError> {
-        use axum::http::StatusCode;
+    pub(crate) fn ready(&self) -> Result<Arc<StimulusMap>, Box<Problem>> {
         match self.stimuli() {
             Stimuli::Ready(map) => Ok(map),
             Stimuli::Preparing(making) => {
                 let (done, total) = making.map_or((0, 0), |m| (m.done, m.total));
-                let message = format!(
+                let detail = format!(
                     "This study's images are still being made ({done} of {total} ready). Please come back shortly."
                 );
-                Err(ApiError::new(StatusCode::SERVICE_UNAVAILABLE, "not_ready", message).retry_after(5))
+                Err(Problem::new(ProblemCode::NotReady, detail).retry_after(5))
             }
             Stimuli::Failed(_) => {
-                let message = "This study's images could not be made. The researchers have been told why.";
-                Err(ApiError::new(StatusCode::SERVICE_UNAVAILABLE, "stimuli_failed", message))
+                let detail = "This study's images could not be made. The researchers have been told why.";
+                Err(Problem::new(ProblemCode::StimuliFailed, detail))
             }
         }
     }

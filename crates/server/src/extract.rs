@@ -1,94 +1,86 @@
-//! What handlers take from a request; each refusal has the one error shape.
+//! What handlers take from a request, typed and checked; each refusal is a problem document.
 
+use crate::api::{Problem, ProblemCode};
 use crate::app::App;
-use crate::error::ApiError;
 use axum::body::Bytes;
 use axum::extract::rejection::{BytesRejection, PathRejection};
-use axum::extract::{FromRequest, FromRequestParts, Path, Request};
+use axum::extract::{FromRequest, FromRequestParts, Path, RawPathParams, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, StatusCode, header};
+use kelir_store::{Session, sha256_hex};
+use kelir_study::schema::{FieldError, Record};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::sync::Arc;
+use utoipa::openapi::path::{Parameter, ParameterIn};
+use utoipa::{IntoParams, ToSchema};
 
 /// A request's JSON object, with the text it came as.
-pub(crate) struct Object(pub(crate) Map<String, Value>);
+pub(crate) struct Object {
+    pub(crate) text: String,
+    pub(crate) value: Value,
+}
 
 impl<S: Send + Sync> FromRequest<S> for Object {
-    type Rejection = ApiError;
+    type Rejection = Box<Problem>;
 
-    async fn from_request(request: Request, state: &S) -> Result<Self, ApiError> {
+    async fn from_request(request: Request, state: &S) -> Result<Self, Box<Problem>> {
         let media_type =
             request.headers().get(header::CONTENT_TYPE).and_then(|v| v.to_str().ok()).unwrap_or_default();
         let media_type = media_type.split(';').next().unwrap_or_default().trim().to_ascii_lowercase();
         if media_type != "application/json" {
-            let message = "The body must be JSON, with Content-Type: application/json.";
-            return Err(ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "not_json", message));
+            let detail = "The body must be JSON, with Content-Type: application/json.";
+            return Err(Problem::new(ProblemCode::NotJson, detail));
         }
-        let bytes =
-            Bytes::from_request(request, state).await.map_err(|rejection: BytesRejection| match rejection
-                .status()
-            {
-                StatusCode::PAYLOAD_TOO_LARGE => ApiError::new(
-                    StatusCode::PAYLOAD_TOO_LARGE,
-                    "too_large",
-                    "The body is larger than this address takes.",
-                ),
-                _ => ApiError::new(StatusCode::BAD_REQUEST, "bad_body", "The body could not be read."),
-            })?;
-        match serde_json::from_slice(&bytes) {
-            Ok(Value::Object(object)) => Ok(Object(object)),
-            Ok(_) => {
-                Err(ApiError::new(StatusCode::BAD_REQUEST, "bad_json", "The body must be a JSON object."))
+        let refused = |rejection: BytesRejection| match rejection.status() {
+            StatusCode::PAYLOAD_TOO_LARGE => {
+                Problem::new(ProblemCode::TooLarge, "The body is larger than this address takes.")
             }
-            Err(error) => {
-                let message =
-                    format!("The body is no JSON: line {}, column {}.", error.line(), error.column());
-                Err(ApiError::new(StatusCode::BAD_REQUEST, "bad_json", message))
-            }
+            _ => Problem::new(ProblemCode::BadBody, "The body could not be read."),
+        };
+        let bytes = Bytes::from_request(request, state).await.map_err(refused)?;
+        let no_json =
+            |why: String| Problem::new(ProblemCode::BadJson, format!("The body is no JSON: {why}."));
+        let text = String::from_utf8(bytes.into()).map_err(|_| no_json("it is no UTF-8 text".to_owned()))?;
+        match serde_json::from_str(&text) {
+            Ok(value @ Value::Object(_)) => Ok(Object { text, value }),
+            Ok(_) => Err(Problem::new(ProblemCode::BadJson, "The body must be a JSON object.")),
+            Err(error) => Err(no_json(format!("line {}, column {}", error.line(), error.column()))),
         }
     }
 }
 
 impl Object {
-    /// Refuses keys other than these.
-    pub(crate) fn only(&self, known: &[&str]) -> Result<(), ApiError> {
-        match self.0.keys().find(|key| !known.contains(&key.as_str())) {
-            Some(key) => Err(ApiError::field(
-                key.as_str(),
-                format!("is not known here; known are {}", known.join(", ")),
-            )),
-            None => Ok(()),
-        }
+    /// The object as a `T`, held to all that `record`, which is `T`'s, says.
+    pub(crate) fn read<T: DeserializeOwned>(&self, record: &Record) -> Result<T, Box<Problem>> {
+        typed(record.check(&self.value), &self.value, ProblemCode::InvalidField)
     }
+}
 
-    pub(crate) fn string(&self, key: &str) -> Result<&str, ApiError> {
-        self.0.get(key).and_then(Value::as_str).ok_or_else(|| ApiError::field(key, "must be a text"))
+fn typed<T: DeserializeOwned>(
+    errors: Vec<FieldError>,
+    value: &Value,
+    code: ProblemCode,
+) -> Result<T, Box<Problem>> {
+    if !errors.is_empty() {
+        return Err(Problem::fields(code, errors));
     }
+    // What the schema lets pass and the type does not, such as 1.0 for a whole number.
+    T::deserialize(value).map_err(|error| {
+        let rule = format!("cannot be read: {error}");
+        Problem::fields(code, vec![FieldError { pointer: String::new(), value: None, rule }])
+    })
+}
 
-    /// A number that must be there, within `[low, high]`.
-    pub(crate) fn number(&self, key: &str, low: f64, high: f64) -> Result<f64, ApiError> {
-        self.optional_number(key, low, high)?.ok_or_else(|| ApiError::field(key, "must be a number"))
-    }
+/// A request's body as a `T`, whose schema it has been held to.
+pub(crate) struct Body<T>(pub(crate) T);
 
-    /// A number within `[low, high]`, absent or null.
-    pub(crate) fn optional_number(&self, key: &str, low: f64, high: f64) -> Result<Option<f64>, ApiError> {
-        match self.0.get(key) {
-            None | Some(Value::Null) => Ok(None),
-            Some(value) => match value.as_f64() {
-                Some(x) if x >= low && x <= high => Ok(Some(x)),
-                _ => Err(ApiError::field(key, format!("must be a number from {low} to {high}"))),
-            },
-        }
-    }
+impl<T: ToSchema + DeserializeOwned, S: Send + Sync> FromRequest<S> for Body<T> {
+    type Rejection = Box<Problem>;
 
-    /// A text of at most `most` bytes, absent or null.
-    pub(crate) fn optional_text(&self, key: &str, most: usize) -> Result<(), ApiError> {
-        match self.0.get(key) {
-            None | Some(Value::Null) => Ok(()),
-            Some(Value::String(text)) if text.len() <= most => Ok(()),
-            Some(_) => Err(ApiError::field(key, format!("must be a text of at most {most} bytes"))),
-        }
+    async fn from_request(request: Request, state: &S) -> Result<Self, Box<Problem>> {
+        let object = Object::from_request(request, state).await?;
+        object.read(&Record::of::<T>()).map(Body)
     }
 }
 
@@ -96,18 +88,62 @@ impl Object {
 pub(crate) struct Parameters<T>(pub(crate) T);
 
 impl<T: DeserializeOwned + Send, S: Send + Sync> FromRequestParts<S> for Parameters<T> {
-    type Rejection = ApiError;
+    type Rejection = Box<Problem>;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Box<Problem>> {
         Path::from_request_parts(parts, state)
             .await
             .map(|Path(inner)| Parameters(inner))
-            .map_err(|_: PathRejection| ApiError::not_found("address"))
+            .map_err(|_: PathRejection| Problem::not_found("address"))
     }
 }
 
+/// The parameters after `?`, held to all that `T` says of them; others are refused, as a mistyped one would be passed over.
+pub(crate) struct Query<T>(pub(crate) T);
+
+impl<T: IntoParams + DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Query<T> {
+    type Rejection = Box<Problem>;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Box<Problem>> {
+        let pairs = axum::extract::Query::<Vec<(String, String)>>::try_from_uri(&parts.uri);
+        let axum::extract::Query(pairs) = pairs.map_err(|_| {
+            Problem::new(ProblemCode::InvalidParameter, "What follows ? in the address cannot be read.")
+        })?;
+        let known = T::into_params(|| Some(ParameterIn::Query));
+        let (mut given, mut errors) = (Map::new(), Vec::new());
+        for (name, text) in pairs {
+            let wrong = |rule: String| FieldError::at(&name, text.as_str(), rule);
+            match known.iter().find(|parameter| parameter.name == name) {
+                None => {
+                    let known: Vec<&str> = known.iter().map(|parameter| parameter.name.as_str()).collect();
+                    errors.push(wrong(format!("is not known here; known are {}", known.join(", "))));
+                }
+                Some(_) if given.contains_key(&name) => errors.push(wrong("must be given once".to_owned())),
+                Some(parameter) => {
+                    let (value, breaches) = read(parameter, &text);
+                    errors.extend(breaches.into_iter().map(|error| wrong(error.rule)));
+                    given.insert(name, value);
+                }
+            }
+        }
+        typed(errors, &Value::Object(given), ProblemCode::InvalidParameter).map(Query)
+    }
+}
+
+/// A parameter's text as the value that its schema means (a number where one fits), and the rules that it breaks.
+fn read(parameter: &Parameter, text: &str) -> (Value, Vec<FieldError>) {
+    let Some(schema) = &parameter.schema else { return (text.into(), Vec::new()) };
+    let record = Record::new(schema, []);
+    let number = serde_json::from_str(text).ok().filter(Value::is_number);
+    let candidates = number.into_iter().chain([Value::from(text)]);
+    let mut read: Vec<_> = candidates.map(|value| (record.check(&value), value)).collect();
+    let fitting = read.iter().position(|(errors, _)| errors.is_empty()).unwrap_or_default();
+    let (errors, value) = read.swap_remove(fitting);
+    (value, errors)
+}
+
 /// The token of `Authorization: Bearer …`.
-pub(crate) fn bearer(headers: &HeaderMap) -> Option<&str> {
+fn bearer(headers: &HeaderMap) -> Option<&str> {
     let value = headers.get(header::AUTHORIZATION)?.to_str().ok()?;
     let (scheme, token) = value.split_once(' ')?;
     scheme.eq_ignore_ascii_case("bearer").then(|| token.trim())
@@ -123,16 +159,35 @@ pub(crate) fn cookie<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> 
         .find_map(|pair| pair.trim().split_once('=').filter(|(key, _)| *key == name).map(|(_, value)| value))
 }
 
-/// Proof that the request comes from a signed-in researcher.
-pub(crate) struct Researcher;
+/// The session that `{session}` of the address names, for who holds its token. An unknown session and a wrong token look the same.
+pub(crate) struct Participant(pub(crate) Session);
+
+impl FromRequestParts<Arc<App>> for Participant {
+    type Rejection = Box<Problem>;
+
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Box<Problem>> {
+        let unknown = || {
+            Problem::new(ProblemCode::Unauthorized, "This session is not known, or the token is not its own.")
+        };
+        let token_hash = sha256_hex(bearer(&parts.headers).ok_or_else(unknown)?.as_bytes());
+        let address = RawPathParams::from_request_parts(parts, app).await;
+        let address = address.map_err(|_| Problem::not_found("address"))?;
+        let id = address.iter().find_map(|(name, value)| (name == "session").then_some(value));
+        let session = app.store.session(id.ok_or_else(unknown)?).await?.ok_or_else(unknown)?;
+        // Hashes of secrets: how long comparing takes says nothing about the secret.
+        if session.token_hash == token_hash { Ok(Participant(session)) } else { Err(unknown()) }
+    }
+}
+
+/// The researcher who is signed in, by name.
+pub(crate) struct Researcher(pub(crate) String);
 
 impl FromRequestParts<Arc<App>> for Researcher {
-    type Rejection = ApiError;
+    type Rejection = Box<Problem>;
 
-    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, ApiError> {
-        let sign_in = || ApiError::new(StatusCode::UNAUTHORIZED, "unauthorized", "Sign in first.");
-        let token = cookie(&parts.headers, crate::routes::auth::COOKIE).ok_or_else(sign_in)?;
-        let hash = kelir_store::sha256_hex(token.as_bytes());
-        app.store.signed_in(&hash).await?.map(|_| Researcher).ok_or_else(sign_in)
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Box<Problem>> {
+        let sign_in = || Problem::new(ProblemCode::Unauthorized, "Sign in first.");
+        let token = cookie(&parts.headers, crate::routes::COOKIE).ok_or_else(sign_in)?;
+        app.store.signed_in(&sha256_hex(token.as_bytes())).await?.map(Researcher).ok_or_else(sign_in)
     }
 }

@@ -3,6 +3,7 @@
 //! [`Server::open`] opens a data folder, [`Server::start`] also makes the stimuli and listens. Studies come from the
 //! folder that is built in and from `DATA/studies/`; a `DATA` laid out like `stimuli/` adds to what is built in or replaces it.
 
+pub mod api;
 mod app;
 mod error;
 mod export;
@@ -17,13 +18,15 @@ mod render;
 pub mod results;
 mod routes;
 mod server;
+mod viewer;
 mod web;
 
 pub use error::{StartError, StudyFileError};
-pub use export::{CODEBOOK, codebook_csv, responses_csv};
+pub use export::{CODEBOOK, codebook, codebook_csv, responses_csv};
 pub use library::{Library, check_study};
 pub use making::{Made, Maker, Making, Task};
 pub use render::RenderMaker;
+pub use routes::openapi_json;
 pub use server::{Handle, Server, ServerConfig};
 
 /// Re-exported for callers that read a data folder without a server.

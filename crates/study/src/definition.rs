@@ -43,6 +43,7 @@ pub struct StudyDefinition {
 
 /// The code at the end and where it leads.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = CompletionSettings)]
 pub struct Completion {
     /// One code for all (recruiting panels ask for it); absent: each session gets its own.
     pub code: Option<String>,

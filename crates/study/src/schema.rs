@@ -29,6 +29,19 @@ pub struct FieldError {
     pub rule: String,
 }
 
+impl FieldError {
+    /// What is wrong with a field at the top, or with a parameter.
+    pub fn at(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> FieldError {
+        let value = Some(words::shortened(&value.into()));
+        FieldError { pointer: format!("/{}", escaped(name)), value, rule: rule.into() }
+    }
+}
+
+/// A name as a JSON Pointer has it.
+fn escaped(name: &str) -> String {
+    name.replace('~', "~0").replace('/', "~1")
+}
+
 /// A schema with the schemas that it names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
@@ -51,6 +64,11 @@ impl Record {
     ) -> Record {
         let components = components.into_iter().map(|(name, schema)| (name, json(&schema)));
         Record { schema: json(schema), components: components.collect() }
+    }
+
+    /// A JSON schema as it is, and the components by which its `$ref`s are resolved.
+    pub fn of_json(schema: Value, components: Map<String, Value>) -> Record {
+        Record { schema, components }
     }
 
     /// Everything in `value` that the schema does not allow, in the order of the schema's walk; empty when all is right.

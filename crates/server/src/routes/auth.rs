@@ -1,11 +1,12 @@
 //! Signing researchers in and out.
 
+use super::{Answered, Fresh, no_content};
+use crate::api::{Problem, ProblemCode, SignIn, SignedIn, refusals};
 use crate::app::App;
-use crate::error::ApiError;
-use crate::extract::{Object, cookie};
+use crate::extract::{Body, Researcher, cookie};
 use crate::password::{RESEARCHER, random_token, verify};
-use axum::extract::{ConnectInfo, Request, State};
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::extract::{ConnectInfo, Extension, State};
+use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use kelir_store::sha256_hex;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -16,48 +17,72 @@ use std::time::{Duration, Instant};
 pub(crate) const COOKIE: &str = "kelir_session";
 const LASTING: Duration = Duration::from_secs(12 * 3600);
 
-pub(crate) async fn post_login(State(app): State<Arc<App>>, request: Request) -> Result<Response, ApiError> {
-    use axum::extract::FromRequest;
-    let address = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|info| info.0.ip());
-    let address = address.unwrap_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED));
-    let body = Object::from_request(request, &()).await?;
-    body.only(&["password"])?;
-    let password = body.string("password")?.to_owned();
-    if password.len() > 1024 {
-        return Err(ApiError::field("password", "must have at most 1024 bytes"));
-    }
+refusals!(NotSignedIn: BadBody, BadJson, NotJson, TooLarge, InvalidField, WrongPassword, TooManyTries);
+
+/// Sign in: the answer sets the cookie `kelir_session`, for twelve hours.
+#[utoipa::path(
+    post, path = "/api/v1/auth/session", tag = "sign-in", request_body = SignIn,
+    responses(
+        (status = NO_CONTENT, description = "Signed in.", headers(("Set-Cookie" = String, description = "`kelir_session`"))),
+        NotSignedIn,
+    )
+)]
+pub(crate) async fn sign_in(
+    State(app): State<Arc<App>>,
+    from: Option<Extension<ConnectInfo<SocketAddr>>>,
+    Body(SignIn { password }): Body<SignIn>,
+) -> Result<Response, Box<Problem>> {
+    let address =
+        from.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |Extension(ConnectInfo(address))| address.ip());
     app.limiter.attempt(address, Instant::now()).map_err(|seconds| {
-        let message = format!("Too many tries; please wait {seconds} seconds.");
-        ApiError::new(StatusCode::TOO_MANY_REQUESTS, "too_many_tries", message).retry_after(seconds)
+        let detail = format!("Too many tries; please wait {seconds} seconds.");
+        Problem::new(ProblemCode::TooManyTries, detail).retry_after(seconds)
     })?;
     let hash = app.store.password_hash(RESEARCHER).await?;
-    let hash = hash.ok_or_else(|| ApiError::internal("no researcher password is set"))?;
-    let permit = app.judging.acquire().await.map_err(ApiError::internal)?;
+    let hash = hash.ok_or_else(|| Problem::internal("no researcher password is set"))?;
+    let permit = app.judging.acquire().await.map_err(Problem::internal)?;
     let right =
-        tokio::task::spawn_blocking(move || verify(&password, &hash)).await.map_err(ApiError::internal)?;
+        tokio::task::spawn_blocking(move || verify(&password, &hash)).await.map_err(Problem::internal)?;
     drop(permit);
     if !right {
-        return Err(ApiError::new(StatusCode::UNAUTHORIZED, "wrong_password", "That is not the password."));
+        return Err(Problem::new(ProblemCode::WrongPassword, "That is not the password."));
     }
     app.limiter.forgive(address);
     let token = random_token();
     app.store.sign_in(RESEARCHER, &sha256_hex(token.as_bytes()), LASTING).await?;
-    Ok(no_content(&app, &token, LASTING.as_secs()))
+    Ok(with_cookie(&app, &token, LASTING.as_secs()))
 }
 
-pub(crate) async fn post_logout(
+refusals!(Nobody: Unauthorized);
+
+/// Who is signed in.
+#[utoipa::path(
+    get, path = "/api/v1/auth/session", tag = "sign-in", security(("researcher" = [])),
+    responses((status = OK, description = "A researcher.", body = SignedIn), Nobody)
+)]
+pub(crate) async fn get_signed_in(Researcher(name): Researcher) -> Answered<SignedIn> {
+    Ok(Fresh(SignedIn { name }))
+}
+
+refusals!(SignOut:);
+
+/// Sign out; whoever is not signed in stays so.
+#[utoipa::path(
+    delete, path = "/api/v1/auth/session", tag = "sign-in", security((), ("researcher" = [])),
+    responses((status = NO_CONTENT, description = "Signed out."), SignOut)
+)]
+pub(crate) async fn sign_out(
     State(app): State<Arc<App>>,
     headers: HeaderMap,
-) -> Result<Response, ApiError> {
+) -> Result<Response, Box<Problem>> {
     if let Some(token) = cookie(&headers, COOKIE) {
         app.store.sign_out(&sha256_hex(token.as_bytes())).await?;
     }
-    Ok(no_content(&app, "", 0))
+    Ok(with_cookie(&app, "", 0))
 }
 
-fn no_content(app: &App, token: &str, seconds: u64) -> Response {
+fn with_cookie(app: &App, token: &str, seconds: u64) -> Response {
     let secure = if app.secure_cookies { "; Secure" } else { "" };
     let cookie = format!("{COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/; Max-Age={seconds}{secure}");
-    (StatusCode::NO_CONTENT, [(header::SET_COOKIE, cookie), (header::CACHE_CONTROL, "no-store".to_owned())])
-        .into_response()
+    ([(header::SET_COOKIE, cookie)], no_content()).into_response()
 }

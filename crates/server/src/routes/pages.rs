@@ -1,7 +1,7 @@
 //! The two pages and what they load.
 
+use crate::api::Problem;
 use crate::app::App;
-use crate::error::ApiError;
 use crate::extract::Parameters;
 use crate::web;
 use axum::extract::State;
@@ -22,19 +22,19 @@ pub(crate) async fn get_root(State(app): State<Arc<App>>) -> Redirect {
 pub(crate) async fn get_participant(
     State(app): State<Arc<App>>,
     Parameters(study): Parameters<String>,
-) -> Result<Response, ApiError> {
+) -> Result<Response, Box<Problem>> {
     let status = if app.studies.contains_key(&study) { StatusCode::OK } else { StatusCode::NOT_FOUND };
     page(status, web::PARTICIPANT)
 }
 
 /// The researcher's page, at any of its addresses.
-pub(crate) async fn get_console() -> Result<Response, ApiError> {
+pub(crate) async fn get_console() -> Result<Response, Box<Problem>> {
     page(StatusCode::OK, web::CONSOLE)
 }
 
 /// A file of the bundle; its name has its hash in it, so it never changes.
-pub(crate) async fn get_asset(Parameters(path): Parameters<String>) -> Result<Response, ApiError> {
-    let bytes = web::file(&format!("assets/{path}")).ok_or_else(|| ApiError::not_found("file"))?;
+pub(crate) async fn get_asset(Parameters(path): Parameters<String>) -> Result<Response, Box<Problem>> {
+    let bytes = web::file(&format!("assets/{path}")).ok_or_else(|| Problem::not_found("file"))?;
     let media_type = match path.rsplit('.').next() {
         Some("js") => "text/javascript; charset=utf-8",
         Some("css") => "text/css; charset=utf-8",
@@ -47,8 +47,8 @@ pub(crate) async fn get_asset(Parameters(path): Parameters<String>) -> Result<Re
     Ok(([(header::CONTENT_TYPE, media_type), (header::CACHE_CONTROL, keep)], bytes).into_response())
 }
 
-fn page(status: StatusCode, name: &str) -> Result<Response, ApiError> {
-    let bytes = web::file(name).ok_or_else(|| ApiError::not_found("page"))?;
+fn page(status: StatusCode, name: &str) -> Result<Response, Box<Problem>> {
+    let bytes = web::file(name).ok_or_else(|| Problem::not_found("page"))?;
     let headers = [(header::CONTENT_TYPE, "text/html; charset=utf-8"), (header::CACHE_CONTROL, "no-cache")];
     Ok((status, headers, bytes).into_response())
 }

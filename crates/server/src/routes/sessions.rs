@@ -1,50 +1,69 @@
 //! Taking part: a session from its beginning to its code. Conditions never leave the server.
 
+use super::studies::StudyPath;
+use super::{Answered, Fresh};
+use crate::api::{
+    Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode, Role,
+    SessionState, SessionStatus, Side, StimulusRef, Trial, TrialKind, TwoAlternativeAnswer, refusals,
+};
 use crate::app::App;
-use crate::error::ApiError;
-use crate::extract::{Object, Parameters, bearer};
+use crate::extract::{Body, Object, Parameters, Participant, Query};
 use crate::password::{random_code, random_token};
 use axum::extract::State;
-use axum::http::{HeaderMap, StatusCode};
-use axum::response::Response;
-use kelir_store::{
-    Appended, Completed, NewResponse, NewSession, PlannedSession, PlannedTrial, Session, sha256_hex,
-};
+use axum::http::StatusCode;
+use kelir_store::{Appended, Completed, NewResponse, PlannedSession, PlannedTrial, Session, sha256_hex};
 use kelir_study::{StudyDefinition, TrialPlan};
-use serde_json::{Map, Value, json};
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
-
-/// Longest response time that is believed, in ms: a day.
-const MAX_RT_MS: f64 = 86_400_000.0;
+use utoipa::IntoParams;
 
 /// Parameters by which recruiting panels name their participants, in order of preference.
 const SUBJECT_PARAMS: [&str; 4] = ["PROLIFIC_PID", "workerId", "subject_id", "id"];
 
-pub(crate) async fn post_session(
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Path)]
+pub(crate) struct SessionPath {
+    /// The session's id.
+    #[expect(dead_code, reason = "`Participant` reads it, with the token")]
+    session: String,
+}
+
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Path)]
+pub(crate) struct TrialPath {
+    /// The session's id.
+    #[expect(dead_code, reason = "`Participant` reads it, with the token")]
+    session: String,
+    /// The trial's index, in plain digits.
+    #[param(value_type = u32)]
+    trial_index: String,
+}
+
+refusals!(NotCreated: NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
+
+/// Begin a session. The answer holds its token, which is told this once.
+#[utoipa::path(
+    post, path = "/api/v1/studies/{study}/sessions", tag = "participants", params(StudyPath), request_body = NewSession,
+    responses((status = CREATED, description = "The session.", body = CreatedSession), NotCreated)
+)]
+pub(crate) async fn create_session(
     State(app): State<Arc<App>>,
-    Parameters(study): Parameters<String>,
-    body: Object,
-) -> Result<Response, ApiError> {
+    Parameters(StudyPath { study }): Parameters<StudyPath>,
+    Body(new): Body<NewSession>,
+) -> Result<(StatusCode, Fresh<CreatedSession>), Box<Problem>> {
     let loaded = app.study(&study)?;
     let stimuli = loaded.ready()?;
-    body.only(&["params", "display"])?;
-    let params = parameters(&body)?;
-    let display = match body.0.get("display") {
-        None | Some(Value::Null) => Map::new(),
-        Some(Value::Object(display)) => display.clone(),
-        Some(_) => return Err(ApiError::field("display", "must be an object")),
-    };
     let token = random_token();
-    let new = NewSession {
+    let params = new.params.unwrap_or_default();
+    let new = kelir_store::NewSession {
         study_id: loaded.study.id.clone(),
         config_hash: loaded.config_hash.clone(),
         subject_id: subject(&params),
         token_hash: sha256_hex(token.as_bytes()),
-        params: json!(params),
-        display: Value::Object(display),
-        idle: Duration::from_secs(60 * u64::from(loaded.study.idle_minutes)),
+        params: params.into_iter().collect(),
+        display: new.display.unwrap_or_default().into(),
+        idle: loaded.idle(),
     };
     let hash = |pair: &str, condition: &str| {
         stimuli.get(&(pair.to_owned(), condition.to_owned())).cloned().unwrap_or_default()
@@ -59,165 +78,159 @@ pub(crate) async fn post_session(
         PlannedSession { seed: plan.seed, trials: plan.trials.into_iter().map(filled).collect() }
     };
     let session = app.store.create_session(new, plan).await?;
-    let mut state = state_of(&app, &session).await?;
-    state["token"] = token.into();
-    Ok(super::fresh(StatusCode::CREATED, state))
+    let state = state_of(&app, &session).await?;
+    Ok((StatusCode::CREATED, Fresh(CreatedSession { state, token })))
 }
 
+refusals!(NoSession: Unauthorized, NotFound);
+
+/// Where a session stands; asking keeps its place in the design.
+#[utoipa::path(
+    get, path = "/api/v1/sessions/{session}", tag = "participants", security(("session" = [])), params(SessionPath),
+    responses((status = OK, description = "The session.", body = SessionState), NoSession)
+)]
 pub(crate) async fn get_session(
+    Participant(session): Participant,
     State(app): State<Arc<App>>,
-    Parameters(session): Parameters<String>,
-    headers: HeaderMap,
-) -> Result<Response, ApiError> {
-    let session = authorised(&app, &session, &headers).await?;
+) -> Answered<SessionState> {
     app.store.touch_session(&session.session_id).await?;
-    Ok(super::fresh(StatusCode::OK, state_of(&app, &session).await?))
+    Ok(Fresh(state_of(&app, &session).await?))
 }
 
-pub(crate) async fn post_consent(
+/// Give consent; the first time counts.
+#[utoipa::path(
+    post, path = "/api/v1/sessions/{session}/consent", tag = "participants", security(("session" = [])), params(SessionPath),
+    responses((status = OK, description = "The session.", body = SessionState), NoSession)
+)]
+pub(crate) async fn give_consent(
+    Participant(session): Participant,
     State(app): State<Arc<App>>,
-    Parameters(session): Parameters<String>,
-    headers: HeaderMap,
-) -> Result<Response, ApiError> {
-    let session = authorised(&app, &session, &headers).await?;
+) -> Answered<SessionState> {
     app.store.consent(&session.session_id).await?;
-    let session = authorised(&app, &session.session_id, &headers).await?;
-    Ok(super::fresh(StatusCode::OK, state_of(&app, &session).await?))
+    let session = app.store.session(&session.session_id).await?;
+    let session = session.ok_or_else(|| Problem::internal("a session is gone"))?;
+    Ok(Fresh(state_of(&app, &session).await?))
 }
 
-pub(crate) async fn put_trial(
+refusals!(NotStored: Unauthorized, NotFound, InvalidParameter, BadBody, BadJson, NotJson, TooLarge, InvalidField, NoConsent, AlreadyAnswered);
+
+/// Answer a trial. The same answer may be sent again; another one is refused, and the first one stands.
+///
+/// What the trial's kind asks for is held to its rules; keys beside it are kept as they come. An acknowledgement means that the answer is
+/// on disk.
+#[utoipa::path(
+    put, path = "/api/v1/sessions/{session}/trials/{trial_index}", tag = "participants", security(("session" = [])),
+    params(TrialPath, Known), request_body = Answer,
+    responses((status = OK, description = "It is stored.", body = Acknowledgement), NotStored)
+)]
+pub(crate) async fn put_answer(
+    Participant(session): Participant,
     State(app): State<Arc<App>>,
-    Parameters((session, trial)): Parameters<(String, String)>,
-    headers: HeaderMap,
+    Parameters(TrialPath { trial_index, .. }): Parameters<TrialPath>,
+    Query(known): Query<Known>,
     body: Object,
-) -> Result<Response, ApiError> {
-    let session = authorised(&app, &session, &headers).await?;
-    let no_trial = || ApiError::not_found("trial");
+) -> Answered<Acknowledgement> {
+    let no_trial = || Problem::not_found("trial");
     // Plain digits alone: "+1" and "01" are other addresses, not other names of a trial.
-    let trial_index: u32 =
-        trial.parse().ok().filter(|i: &u32| i.to_string() == trial).ok_or_else(no_trial)?;
+    let index = trial_index.parse().ok().filter(|i: &u32| i.to_string() == trial_index);
+    let trial_index = index.filter(|i| (*i as usize) < session.trials.len()).ok_or_else(no_trial)?;
     if session.consented_at.is_none() {
-        return Err(ApiError::conflict("no_consent", "An answer can be stored only after consent."));
+        return Err(Problem::new(ProblemCode::NoConsent, "An answer can be stored only after consent."));
     }
-    let chose_left = match body.string("choice")? {
-        "left" => true,
-        "right" => false,
-        _ => return Err(ApiError::field("choice", "must be \"left\" or \"right\"")),
-    };
-    let rt_ms = body.number("rt", 0.0, MAX_RT_MS)?;
-    check_columns(&body)?;
-    let payload = Value::Object(body.0).to_string();
-    let new = NewResponse { trial_index, chose_left, rt_ms, payload };
+    let answer: TwoAlternativeAnswer = body.read(Answer::record(TrialKind::TwoAlternative))?;
+    let chose_left = answer.choice == Side::Left;
+    let new = NewResponse { trial_index, chose_left, rt_ms: answer.common.rt, payload: body.text };
     match app.store.append_response(&session, new).await? {
         Appended::Stored | Appended::Same => {}
         Appended::Different => {
-            let message = "This trial has an answer already; the first one stands.";
-            return Err(ApiError::conflict("already_answered", message));
+            let detail = "This trial has an answer already; the first one stands.";
+            return Err(Problem::new(ProblemCode::AlreadyAnswered, detail));
         }
         Appended::NoSuchTrial => return Err(no_trial()),
     }
-    let answered = app.store.answered(&session.session_id).await?;
-    let next_trial = next_trial(&session, &answered);
-    Ok(super::fresh(StatusCode::OK, json!({ "acknowledged": true, "next_trial": next_trial })))
+    let SessionState { next_trial, more, trials, .. } = state_of(&app, &session).await?;
+    let trials = known.known.map(|known| trials.into_iter().skip(known).collect()).unwrap_or_default();
+    Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
 }
 
-pub(crate) async fn post_complete(
+refusals!(NotComplete: Unauthorized, NotFound, Incomplete);
+
+/// Finish a session whose every trial is stored; the code is the same each time.
+#[utoipa::path(
+    post, path = "/api/v1/sessions/{session}/completion", tag = "participants", security(("session" = [])), params(SessionPath),
+    responses((status = OK, description = "The end.", body = Completion), NotComplete)
+)]
+pub(crate) async fn complete_session(
+    Participant(session): Participant,
     State(app): State<Arc<App>>,
-    Parameters(session): Parameters<String>,
-    headers: HeaderMap,
-) -> Result<Response, ApiError> {
-    let session = authorised(&app, &session, &headers).await?;
+) -> Answered<Completion> {
     let study = app.version(&session.study_id, &session.config_hash).await?;
     let code = study.completion.code.clone().unwrap_or_else(|| {
         let code = random_code(8);
         format!("{}-{}", &code[..4], &code[4..])
     });
     match app.store.complete(&session, &code).await? {
-        Completed::Code(code) => Ok(super::fresh(StatusCode::OK, completion(&study, &session, &code))),
+        Completed::Code(code) => Ok(Fresh(completion(&study, &session, code))),
         Completed::Missing(missing) => {
-            let message = format!("{} of {} trials have no answer yet.", missing.len(), session.trials.len());
-            Err(ApiError::conflict("incomplete", &message).with("missing", json!(missing)))
+            let detail = format!("{} of {} trials have no answer yet.", missing.len(), session.trials.len());
+            let mut problem = Problem::new(ProblemCode::Incomplete, detail);
+            (problem.missing, problem.more) = (Some(missing), Some(false));
+            Err(problem)
         }
     }
 }
 
-/// The session, if the request holds its token. An unknown session and a wrong token look the same.
-async fn authorised(app: &App, session_id: &str, headers: &HeaderMap) -> Result<Session, ApiError> {
-    let token_hash = sha256_hex(bearer(headers).ok_or_else(ApiError::unauthorized)?.as_bytes());
-    let session = app.store.session(session_id).await?.ok_or_else(ApiError::unauthorized)?;
-    // Hashes of secrets: how long comparing takes says nothing about the secret.
-    if session.token_hash == token_hash { Ok(session) } else { Err(ApiError::unauthorized()) }
-}
-
-async fn state_of(app: &App, session: &Session) -> Result<Value, ApiError> {
+async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Problem>> {
     let study = app.version(&session.study_id, &session.config_hash).await?;
     let answered = app.store.answered(&session.session_id).await?;
-    let stimulus = |sha256: &str| json!({ "sha256": sha256, "url": format!("/stimuli/{sha256}") });
-    let [width, height] = study.size;
-    let trials: Vec<Value> = session
-        .trials
-        .iter()
-        .map(|planned| {
-            let trial = &planned.trial;
-            json!({
-                "trial_index": trial.trial_index,
-                "block_id": trial.block_id,
-                "block_index": trial.block_index,
-                "pair_index": trial.item_index,
-                "kind": trial.kind,
-                "left": stimulus(&planned.left_sha256),
-                "right": stimulus(&planned.right_sha256),
-                "width": width,
-                "height": height,
-                "answered": answered.contains(&trial.trial_index),
-            })
-        })
-        .collect();
+    let trials: Vec<Trial> =
+        session.trials.iter().map(|planned| trial_of(&study, planned, &answered)).collect();
     let status = match (&session.completed_at, &session.consented_at) {
-        (Some(_), _) => "completed",
-        (None, Some(_)) => "in_progress",
-        (None, None) => "consent",
+        (Some(_), _) => SessionStatus::Completed,
+        (None, Some(_)) => SessionStatus::InProgress,
+        (None, None) => SessionStatus::Consent,
     };
-    let mut state = json!({
-        "session_id": session.session_id,
-        "study_id": session.study_id,
-        "status": status,
-        "consented": session.consented_at.is_some(),
-        "trials": trials,
-        "next_trial": next_trial(session, &answered),
-    });
-    if let Some(code) = &session.completion_code {
-        let Value::Object(more) = completion(&study, session, code) else { return Ok(state) };
-        state.as_object_mut().into_iter().for_each(|state| state.extend(more.clone()));
+    let end = session.completion_code.clone().map(|code| completion(&study, session, code));
+    let (completion_code, redirect) = end.map(|end| (end.completion_code, end.redirect)).unzip();
+    Ok(SessionState {
+        session_id: session.session_id.clone(),
+        study_id: session.study_id.clone(),
+        status,
+        consented: session.consented_at.is_some(),
+        more: false,
+        most_trials: trials.len(),
+        next_trial: trials.iter().find(|trial| !trial.answered).map(|trial| trial.trial_index),
+        trials,
+        completion_code,
+        redirect: redirect.flatten(),
+    })
+}
+
+fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -> Trial {
+    let trial = &planned.trial;
+    let stimulus =
+        |sha256: &str| StimulusRef { sha256: sha256.to_owned(), url: format!("/stimuli/{sha256}") };
+    let [width, height] = study.size;
+    Trial {
+        trial_index: trial.trial_index,
+        trial: TrialKind::TwoAlternative,
+        block_index: trial.block_index,
+        item_index: trial.item_index,
+        kind: trial.kind,
+        shown: BTreeMap::from([
+            (Role::Left, stimulus(&planned.left_sha256)),
+            (Role::Right, stimulus(&planned.right_sha256)),
+        ]),
+        settings: None,
+        width,
+        height,
+        answered: answered.contains(&trial.trial_index),
     }
-    Ok(state)
 }
 
-fn completion(study: &StudyDefinition, session: &Session, code: &str) -> Value {
-    let params: BTreeMap<String, String> = serde_json::from_value(session.params.clone()).unwrap_or_default();
-    match study.completion.redirect_to(code, &params) {
-        Some(redirect) => json!({ "completion_code": code, "redirect": redirect }),
-        None => json!({ "completion_code": code }),
-    }
-}
-
-fn next_trial(session: &Session, answered: &[u32]) -> Option<u32> {
-    (0..session.trials.len() as u32).find(|index| !answered.contains(index))
-}
-
-/// The address's parameters: at most 64 texts, names up to 64 and values up to 512 bytes.
-fn parameters(body: &Object) -> Result<BTreeMap<String, String>, ApiError> {
-    let map = match body.0.get("params") {
-        None | Some(Value::Null) => return Ok(BTreeMap::new()),
-        Some(Value::Object(map)) if map.len() <= 64 => map,
-        Some(_) => return Err(ApiError::field("params", "must be an object of at most 64 texts")),
-    };
-    map.iter()
-        .map(|(name, value)| match value.as_str() {
-            Some(text) if name.len() <= 64 && text.len() <= 512 => Ok((name.clone(), text.to_owned())),
-            _ => Err(ApiError::field(format!("params.{name}"), "must be a text of at most 512 bytes")),
-        })
-        .collect()
+fn completion(study: &StudyDefinition, session: &Session, completion_code: String) -> Completion {
+    let params = BTreeMap::deserialize(&session.params).unwrap_or_default();
+    Completion { redirect: study.completion.redirect_to(&completion_code, &params), completion_code }
 }
 
 /// The panel's name for the participant; only what can stand in a file name and starts no spreadsheet formula.
@@ -228,35 +241,4 @@ fn subject(params: &BTreeMap<String, String>) -> Option<String> {
             && s.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_')
     };
     SUBJECT_PARAMS.iter().filter_map(|name| params.get(*name)).find(plain).cloned()
-}
-
-/// The columns that analyses read have the types they say; others are kept as they came.
-fn check_columns(body: &Object) -> Result<(), ApiError> {
-    for (key, high) in [
-        ("onset", 1e12),
-        ("time_elapsed", 1e12),
-        ("scale", 100.0),
-        ("device_pixel_ratio", 100.0),
-        ("refresh_hz", 10_000.0),
-        ("reload_count", 1e9),
-        ("hidden_ms", 1e12),
-    ] {
-        body.optional_number(key, 0.0, high)?;
-    }
-    for key in ["trial_type", "plugin_version", "arrangement", "timestamp"] {
-        body.optional_text(key, 100)?;
-    }
-    match body.0.get("input").map(Value::as_str) {
-        None | Some(Some("mouse" | "touch" | "keyboard" | "pen")) => {}
-        Some(_) => return Err(ApiError::field("input", "must be mouse, touch, pen or keyboard")),
-    }
-    match body.0.get("viewport") {
-        None | Some(Value::Null) => Ok(()),
-        Some(Value::Array(size))
-            if size.len() == 2 && size.iter().all(|v| v.as_f64().is_some_and(|x| x >= 0.0)) =>
-        {
-            Ok(())
-        }
-        Some(_) => Err(ApiError::field("viewport", "must be [width, height]")),
-    }
 }

@@ -1,19 +1,43 @@
 //! Stimuli, by hash, immutable.
 
+use crate::api::{Problem, refusals};
 use crate::app::App;
-use crate::error::ApiError;
 use crate::extract::Parameters;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
 use std::sync::Arc;
+use utoipa::IntoParams;
 
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Path)]
+pub(crate) struct StimulusPath {
+    /// SHA-256 of its bytes, 64 hex digits.
+    sha256: String,
+}
+
+refusals!(Stimulus: NotFound);
+
+/// The bytes of a stimulus, or of one frame of an animation; they never change.
+///
+/// An animation is JSON (`application/vnd.kelir.animation+json`) that names its frames by hash.
+#[utoipa::path(
+    get, path = "/stimuli/{sha256}", tag = "participants", params(StimulusPath),
+    responses(
+        (status = OK, description = "The bytes.", content(
+            (Vec<u8> = "image/png"), (Vec<u8> = "image/jpeg"), (Vec<u8> = "application/vnd.kelir.animation+json")
+        )),
+        (status = NOT_MODIFIED, description = "`If-None-Match` names them: the browser has them already."),
+        Stimulus,
+    )
+)]
 pub(crate) async fn get_stimulus(
     State(app): State<Arc<App>>,
-    Parameters(sha256): Parameters<String>,
+    Parameters(StimulusPath { sha256 }): Parameters<StimulusPath>,
     headers: HeaderMap,
-) -> Result<Response, ApiError> {
-    let missing = || ApiError::not_found("stimulus");
+) -> Result<Response, Box<Problem>> {
+    let missing = || Problem::not_found("stimulus");
     let (info, bytes) = app.store.stimulus(&sha256).await?.ok_or_else(missing)?;
     let etag = format!("\"{sha256}\"");
     let known = headers.get(header::IF_NONE_MATCH).and_then(|v| v.to_str().ok());

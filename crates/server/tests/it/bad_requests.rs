@@ -1,18 +1,18 @@
 use crate::client::{Answer, Client, body_of};
 use axum::body::Body;
 use axum::http::{Method, Request, StatusCode, header};
+use kelir_server::api::Problem;
 use serde_json::{Value, json};
 
 /// The one shape of every refusal, and nothing of what is behind the server.
 fn assert_shape(what: &str, answer: &Answer, status: u16) {
     assert_eq!(answer.status.as_u16(), status, "{what}: {}", answer.text());
-    assert_eq!(answer.header("content-type"), "application/json", "{what}");
-    let body = answer.json();
-    assert_eq!(body.as_object().unwrap().len(), 1, "{what}: {body}");
-    let error = &body["error"];
-    let code = error["code"].as_str().unwrap();
-    assert!(!code.is_empty() && code.bytes().all(|b| b.is_ascii_lowercase() || b == b'_'), "{what}: {code}");
-    assert!(!error["message"].as_str().unwrap().is_empty(), "{what}");
+    assert_eq!(answer.header("content-type"), "application/problem+json", "{what}");
+    let problem: Problem = serde_json::from_slice(&answer.bytes).unwrap();
+    assert_eq!((problem.status, problem.kind.as_str()), (status, "about:blank"), "{what}");
+    assert_eq!(Some(problem.title.as_str()), answer.status.canonical_reason(), "{what}");
+    assert_eq!(problem.code.status(), answer.status, "{what}");
+    assert!(!problem.detail.is_empty(), "{what}");
     let text = answer.text().to_lowercase();
     for leak in ["sqlx", "sqlite", "select ", "panicked", ".rs:", "backtrace", "/tmp"] {
         assert!(!text.contains(leak), "{what}: {leak} in {text}");
@@ -62,13 +62,71 @@ async fn bad_answers_to_a_trial() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn every_wrong_field_is_named_with_its_value_and_its_rule() {
+    let client = Client::ready().await;
+    let (path, token, _) = client.join(json!({})).await;
+    let mut body = body_of("middle");
+    body["rt"] = json!(-1);
+    body["viewport"] = json!([1280, "wide"]);
+    body["frames"]["a/b"] = json!({ "fps": -1 });
+    body.as_object_mut().unwrap().remove("onset");
+    let answer = client.call("PUT", &format!("{path}/trials/0"), &token, &body).await;
+    assert_shape("four wrong fields", &answer, 422);
+    let roles = "must be \"left\", \"right\", \"first\" or \"second\"";
+    let expected = json!([
+        { "pointer": "/onset", "rule": "must be given: a number from 0 to 1000000000000" },
+        { "pointer": "/frames/a~1b", "value": { "fps": -1 }, "rule": format!("has a name that {roles}") },
+        { "pointer": "/frames/a~1b/fps", "value": -1, "rule": "must be a number from 0 or null" },
+        { "pointer": "/rt", "value": -1, "rule": "must be a number from 0 to 86400000" },
+        { "pointer": "/viewport/1", "value": "wide", "rule": "must be a number from 0" },
+        { "pointer": "/choice", "value": "middle", "rule": "must be \"left\" or \"right\"" },
+    ]);
+    assert_eq!(answer.json()["errors"], expected);
+    assert_eq!(answer.json()["detail"], "onset must be given: a number from 0 to 1000000000000; 5 more.");
+    // A hostile body is answered shortly, and a password is not said back.
+    let many: serde_json::Map<String, Value> = (0..5000).map(|i| (format!("k{i}"), json!(1))).collect();
+    let answer = client.call("POST", "/api/v1/studies/shadow-puppets/sessions", "", &json!(many)).await;
+    assert_eq!(answer.json()["errors"].as_array().unwrap().len(), 100);
+    let secret = json!({ "password": "s3cret".repeat(200), "name": "x" });
+    let answer = client.call("POST", "/api/v1/auth/session", "", &secret).await;
+    assert_shape("a long password", &answer, 422);
+    assert!(!answer.text().contains("s3cret") && answer.json()["errors"][1]["pointer"] == "/password");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn bad_parameters_are_named() {
+    let client = Client::ready().await;
+    let cookie = client.sign_in().await;
+    for (path, pointers) in [
+        ("studies?limit=0", vec!["/limit"]),
+        ("studies?limit=201&cursor=00", vec!["/limit"]),
+        ("studies?limit=ten", vec!["/limit"]),
+        ("studies?limit=%2B1", vec!["/limit"]),
+        ("studies?limit=1&limit=2", vec!["/limit"]),
+        ("studies?cursor=00", vec!["/cursor"]),
+        ("studies?limt=5&limit=-1&a/b=1", vec!["/limt", "/limit", "/a~1b"]),
+        ("studies/shadow-puppets/versions/curent/results", vec!["/version"]),
+        ("studies/shadow-puppets/versions/0123456/results", vec!["/version"]),
+        ("studies/shadow-puppets/versions/current/results?with=some", vec!["/with"]),
+        ("studies/shadow-puppets/versions/current/report?wiht=all", vec!["/wiht"]),
+    ] {
+        let answer = client.research(&cookie, &format!("/api/v1/{path}")).await;
+        assert_shape(path, &answer, 400);
+        let errors = answer.json()["errors"].clone();
+        let named: Vec<&str> =
+            errors.as_array().unwrap().iter().map(|e| e["pointer"].as_str().unwrap()).collect();
+        assert_eq!(named, pointers, "{path}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn bad_bodies_on_every_route_that_takes_one() {
     let client = Client::ready().await;
     let (path, token, _) = client.join(json!({})).await;
     let routes = [
         ("POST", "/api/v1/studies/shadow-puppets/sessions".to_owned(), 64 << 10),
         ("PUT", format!("{path}/trials/0"), 1 << 20),
-        ("POST", "/api/v1/login".to_owned(), 64 << 10),
+        ("POST", "/api/v1/auth/session".to_owned(), 64 << 10),
     ];
     for (method, path, limit) in &routes {
         let send = |media: &'static str, body: Vec<u8>| {
@@ -141,7 +199,7 @@ async fn wrong_tokens_and_unknown_sessions_look_the_same() {
             ("GET", "", Value::Null),
             ("POST", "/consent", Value::Null),
             ("PUT", "/trials/0", body_of("left")),
-            ("POST", "/complete", Value::Null),
+            ("POST", "/completion", Value::Null),
         ] {
             let answer = client.call(method, &format!("{path}{rest}"), token, &body).await;
             assert_shape(&format!("{method} {path}{rest}"), &answer, 401);
@@ -165,16 +223,17 @@ async fn addresses_and_methods_that_there_are_not() {
         ("GET", "/assets/../../Cargo.toml", 404),
         ("GET", "/assets/..%2f..%2fCargo.toml", 404),
         ("DELETE", "/api/v1/studies/shadow-puppets", 405),
-        ("GET", "/api/v1/login", 405),
+        ("PUT", "/api/v1/auth/session", 405),
         ("POST", "/healthz", 405),
         ("PATCH", "/stimuli/abc", 405),
-        ("GET", "/api/v1/admin/studies", 401),
-        ("GET", "/api/v1/admin/studies/shadow-puppets/results", 401),
-        ("GET", "/api/v1/admin/studies/shadow-puppets/responses.csv", 401),
-        ("GET", "/api/v1/admin/studies/shadow-puppets/codebook.csv", 401),
-        ("GET", "/api/v1/admin/studies/shadow-puppets/pairs.csv", 401),
-        ("GET", "/api/v1/admin/studies/shadow-puppets/report", 401),
-        ("GET", "/api/v1/admin/papers/taylor-cameron", 401),
+        ("GET", "/api/v1/studies", 401),
+        ("GET", "/api/v1/studies/shadow-puppets/versions", 401),
+        ("GET", "/api/v1/studies/shadow-puppets/versions/current/results", 401),
+        ("GET", "/api/v1/studies/shadow-puppets/versions/current/responses.csv", 401),
+        ("GET", "/api/v1/papers/taylor-cameron", 401),
+        ("GET", "/api/v1/admin/studies", 404),
+        ("POST", "/api/v1/login", 404),
+        ("POST", "/api/v1/logout", 404),
     ] {
         assert_shape(&format!("{method} {path}"), &client.call(method, path, "", &Value::Null).await, status);
     }
@@ -190,7 +249,7 @@ async fn a_study_that_is_not_ready_says_so() {
     ] {
         let answer = client.call(method, path, "", &body).await;
         assert_shape(path, &answer, 503);
-        assert_eq!(answer.json()["error"]["code"], "not_ready");
+        assert_eq!(answer.json()["code"], "not_ready");
         assert_eq!(answer.header("retry-after"), "5");
     }
 }

@@ -1,6 +1,7 @@
 //! A server in a folder of its own, asked without a network.
 
 use crate::placeholder::Placeholder;
+use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
 use kelir_server::{Maker, Server, ServerConfig};
@@ -121,6 +122,14 @@ impl Answer {
     }
 }
 
+/// Sends a request to a router.
+pub async fn send(router: Router, request: Request<Body>) -> Answer {
+    let response = router.oneshot(request).await.unwrap();
+    let (status, headers) = (response.status(), response.headers().clone());
+    let bytes = to_bytes(response.into_body(), 64 << 20).await.unwrap().to_vec();
+    Answer { status, headers, bytes }
+}
+
 pub struct Client {
     pub server: Server,
     pub folder: TempDir,
@@ -155,10 +164,7 @@ impl Client {
     }
 
     pub async fn send(&self, request: Request<Body>) -> Answer {
-        let response = self.server.router().oneshot(request).await.unwrap();
-        let (status, headers) = (response.status(), response.headers().clone());
-        let bytes = to_bytes(response.into_body(), 64 << 20).await.unwrap().to_vec();
-        Answer { status, headers, bytes }
+        send(self.server.router(), request).await
     }
 
     /// A request with a JSON body (none for null) and a bearer token (none for "").
@@ -182,7 +188,7 @@ impl Client {
 
     /// Signs in; answers the cookie.
     pub async fn sign_in(&self) -> String {
-        let answer = self.call("POST", "/api/v1/login", "", &json!({ "password": PASSWORD })).await;
+        let answer = self.call("POST", "/api/v1/auth/session", "", &json!({ "password": PASSWORD })).await;
         assert_eq!(answer.status, StatusCode::NO_CONTENT, "{}", answer.text());
         answer.header("set-cookie").split(';').next().unwrap().to_owned()
     }
@@ -217,7 +223,7 @@ impl Client {
         for (trial, choice) in (0..).zip(choices) {
             assert_eq!(self.choose(&path, &token, trial, choice).await.status, StatusCode::OK);
         }
-        let answer = self.call("POST", &format!("{path}/complete"), &token, &Value::Null).await;
+        let answer = self.call("POST", &format!("{path}/completion"), &token, &Value::Null).await;
         assert_eq!(answer.status, StatusCode::OK, "{}", answer.text());
         answer.json()
     }
@@ -228,6 +234,6 @@ pub fn body_of(choice: &str) -> Value {
     json!({
         "choice": choice, "rt": 812.5, "onset": 100.25, "time_elapsed": 5000, "trial_type": "two-alternative",
         "plugin_version": "0.1.0", "input": "keyboard", "scale": 1.0, "device_pixel_ratio": 1.0, "viewport": [1280, 800],
-        "refresh_hz": 60.0, "reload_count": 0, "timestamp": "2026-11-22T10:30:00.000Z", "frames": { "left": [1, 2, 3] },
+        "refresh_hz": 60.0, "reload_count": 0, "timestamp": "2026-11-22T10:30:00.000Z", "frames": { "left": { "fps": 12, "late": [1, 2, 3] } },
     })
 }

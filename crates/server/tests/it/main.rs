@@ -4,6 +4,8 @@
 mod bad_requests;
 mod client;
 mod making;
+mod openapi;
 mod placeholder;
 mod research;
 mod taking_part;
+mod versions;

@@ -7,27 +7,24 @@ use serde_json::json;
 #[tokio::test(flavor = "multi_thread")]
 async fn signing_in_and_out() {
     let client = Client::ready().await;
-    let wrong = client.call("POST", "/api/v1/login", "", &json!({ "password": "gong" })).await;
-    assert_eq!(
-        (wrong.status, &wrong.json()["error"]["code"]),
-        (StatusCode::UNAUTHORIZED, &json!("wrong_password"))
-    );
-    let answer = client.call("POST", "/api/v1/login", "", &json!({ "password": PASSWORD })).await;
+    let wrong = client.call("POST", "/api/v1/auth/session", "", &json!({ "password": "gong" })).await;
+    assert_eq!((wrong.status, &wrong.json()["code"]), (StatusCode::UNAUTHORIZED, &json!("wrong_password")));
+    let answer = client.call("POST", "/api/v1/auth/session", "", &json!({ "password": PASSWORD })).await;
     let cookie = answer.header("set-cookie").to_owned();
     for part in ["kelir_session=", "HttpOnly", "SameSite=Strict", "Path=/"] {
         assert!(cookie.contains(part), "{part} in {cookie}");
     }
     let cookie = cookie.split(';').next().unwrap();
-    let studies = client.research(cookie, "/api/v1/admin/studies").await.json();
-    assert_eq!(studies["studies"][0]["id"], "shadow-puppets");
-    assert_eq!(studies["studies"][0]["status"], "ready");
-    let out = Request::post("/api/v1/logout").header(header::COOKIE, cookie).body(Body::empty()).unwrap();
+    let studies = client.research(cookie, "/api/v1/studies").await.json();
+    assert_eq!(studies["items"][0]["id"], "shadow-puppets");
+    assert_eq!(studies["items"][0]["status"], "ready");
+    let who = client.research(cookie, "/api/v1/auth/session").await.json();
+    assert_eq!(who, json!({ "name": "researcher" }));
+    let out =
+        Request::delete("/api/v1/auth/session").header(header::COOKIE, cookie).body(Body::empty()).unwrap();
     assert_eq!(client.send(out).await.status, StatusCode::NO_CONTENT);
-    assert_eq!(client.research(cookie, "/api/v1/admin/studies").await.status, StatusCode::UNAUTHORIZED);
-    assert_eq!(
-        client.research("kelir_session=x", "/api/v1/admin/studies").await.status,
-        StatusCode::UNAUTHORIZED
-    );
+    assert_eq!(client.research(cookie, "/api/v1/studies").await.status, StatusCode::UNAUTHORIZED);
+    assert_eq!(client.research("kelir_session=x", "/api/v1/studies").await.status, StatusCode::UNAUTHORIZED);
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -35,12 +32,13 @@ async fn guessing_is_slowed_down() {
     let client = Client::ready().await;
     let mut statuses = Vec::new();
     for guess in 0..9 {
-        let answer =
-            client.call("POST", "/api/v1/login", "", &json!({ "password": format!("guess {guess}") })).await;
+        let answer = client
+            .call("POST", "/api/v1/auth/session", "", &json!({ "password": format!("guess {guess}") }))
+            .await;
         statuses.push(answer.status.as_u16());
     }
     assert_eq!(statuses, [401, 401, 401, 401, 401, 401, 401, 401, 429]);
-    let right = client.call("POST", "/api/v1/login", "", &json!({ "password": PASSWORD })).await;
+    let right = client.call("POST", "/api/v1/auth/session", "", &json!({ "password": PASSWORD })).await;
     assert_eq!(right.status, StatusCode::TOO_MANY_REQUESTS);
     assert!(right.header("retry-after").parse::<u64>().unwrap() > 0);
 }
@@ -49,7 +47,7 @@ async fn guessing_is_slowed_down() {
 async fn results_are_what_the_answers_add_up_to() {
     let client = Client::ready().await;
     let cookie = client.sign_in().await;
-    let path = "/api/v1/admin/studies/shadow-puppets/results";
+    let path = "/api/v1/studies/shadow-puppets/versions/current/results";
     let empty = client.research(&cookie, path).await.json();
     assert_eq!(empty["blocks"][0]["n"], 0);
     assert!(empty["blocks"][0]["t"].is_null() && empty["blocks"][0]["note"].is_string());
@@ -106,14 +104,16 @@ async fn the_export_has_one_row_a_trial_and_a_codebook_for_every_column() {
     client.take(json!({ "PROLIFIC_PID": "=cmd|' /C calc'!A0" }), ["left", "right", "left"]).await;
     client.take(json!({ "PROLIFIC_PID": "5f0a" }), ["left", "right", "left"]).await;
     let cookie = client.sign_in().await;
-    let answer = client.research(&cookie, "/api/v1/admin/studies/shadow-puppets/responses.csv").await;
+    let answer =
+        client.research(&cookie, "/api/v1/studies/shadow-puppets/versions/current/responses.csv").await;
     assert_eq!(answer.header("content-type"), "text/csv; charset=utf-8");
     let text = answer.text();
     let lines: Vec<&str> = text.trim_end().split("\r\n").collect();
     assert_eq!(lines.len(), 7);
     assert!(!text.contains("=cmd"));
     let header: Vec<&str> = lines[0].split(',').collect();
-    let codebook = client.research(&cookie, "/api/v1/admin/studies/shadow-puppets/codebook.csv").await.text();
+    let codebook =
+        client.research(&cookie, "/api/v1/studies/shadow-puppets/versions/current/codebook.csv").await.text();
     let described: Vec<&str> =
         codebook.trim_end().split("\r\n").skip(1).map(|l| l.split(',').next().unwrap()).collect();
     assert_eq!(header, described);
@@ -176,8 +176,9 @@ async fn the_screened_are_left_out_named_and_shown_apart() {
     let client = Client { server, folder, drawer };
     client.server.make_stimuli(&|_| {}).await.unwrap();
     let cookie = client.sign_in().await;
-    let results =
-        async || client.research(&cookie, "/api/v1/admin/studies/shadow-puppets/results").await.json();
+    let results = async || {
+        client.research(&cookie, "/api/v1/studies/shadow-puppets/versions/current/results").await.json()
+    };
 
     client.take(json!({}), ["left", "right", "left"]).await;
     let before = results().await;
@@ -218,7 +219,7 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
         client.take(json!({}), choices).await;
     }
     let cookie = client.sign_in().await;
-    let path = "/api/v1/admin/studies/shadow-puppets";
+    let path = "/api/v1/studies/shadow-puppets/versions/current";
     let results = client.research(&cookie, &format!("{path}/results")).await.json();
     let report = client.research(&cookie, &format!("{path}/report")).await.json();
     for key in ["study", "config_hash", "participants", "stimuli"] {
@@ -230,7 +231,7 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
         for (key, value) in short.as_object().unwrap() {
             assert_eq!(&block[key], value, "{key}");
         }
-        assert_eq!(block["analysis"]["proportion"]["trials"], 4 * short["pairs"].as_u64().unwrap());
+        assert_eq!(block["analysis"]["proportion"]["trials"], 4 * short["items"].as_u64().unwrap());
     }
     assert_eq!((&report["chain"]["rows"], &report["chain"]["broken"]), (&json!(12), &json!(null)));
     let offline =
@@ -255,7 +256,7 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
             if ending == "html" { format!("<data value=\"{t}\">") } else { format!("{:.4}", t.abs()) };
         assert!(text.contains(&shown), "{shown} in {text}");
     }
-    let nobody = client.research(&cookie, "/api/v1/admin/studies/nobody/report.html").await;
+    let nobody = client.research(&cookie, "/api/v1/studies/nobody/versions/current/report.html").await;
     assert_eq!(nobody.status, StatusCode::NOT_FOUND);
 
     let pairs = client.research(&cookie, &format!("{path}/pairs.csv")).await.text();
@@ -285,7 +286,7 @@ async fn a_hostile_study_file_writes_no_markup_into_its_report() {
     let client = Client { server, folder, drawer };
     let cookie = client.sign_in().await;
     for ending in ["html", "md"] {
-        let path = format!("/api/v1/admin/studies/shadow-puppets/report.{ending}");
+        let path = format!("/api/v1/studies/shadow-puppets/versions/current/report.{ending}");
         let text = client.research(&cookie, &path).await.text();
         assert!(!text.contains("<script") && !text.contains("<img"), "{text}");
         assert!(
@@ -299,7 +300,7 @@ async fn a_hostile_study_file_writes_no_markup_into_its_report() {
 async fn the_papers_own_tests_can_be_laid_beside_the_results() {
     let client = Client::unready().await;
     let cookie = client.sign_in().await;
-    let paper = client.research(&cookie, "/api/v1/admin/papers/taylor-cameron").await.json();
+    let paper = client.research(&cookie, "/api/v1/papers/taylor-cameron").await.json();
     let t: Vec<f64> =
         paper["comparisons"].as_array().unwrap().iter().map(|c| c["test"]["t"].as_f64().unwrap()).collect();
     for (ours, printed) in t.iter().zip([-1.437_591, 4.208_834, -3.983_482]) {

@@ -9,6 +9,7 @@ use crate::{Result, StatsError};
 
 /// What a one-sample (or paired) t-test says.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = OneSampleTTest)]
 pub struct TTest {
     /// How many values (pairs).
     pub n: u64,

@@ -1,6 +1,6 @@
 //! A JSON value held to a schema.
 
-use super::{FieldError, Record, list, words};
+use super::{FieldError, Record, escaped, list, words};
 use serde_json::{Map, Value};
 
 /// A walk through a value beside its schema.
@@ -137,11 +137,11 @@ impl Check<'_> {
         }
     }
 
-    /// Runs `step` one level down, at `name` (escaped as RFC 6901 asks).
+    /// Runs `step` one level down, at `name`.
     fn below(&mut self, name: &str, step: impl FnOnce(&mut Self)) {
         let before = self.pointer.len();
         self.pointer.push('/');
-        self.pointer.push_str(&name.replace('~', "~0").replace('/', "~1"));
+        self.pointer.push_str(&escaped(name));
         step(self);
         self.pointer.truncate(before);
     }

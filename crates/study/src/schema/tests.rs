@@ -189,7 +189,7 @@ fn a_second_opinion_finds_the_same_places() {
     let cases: Vec<Case> = serde_json::from_str(include_str!("../../tests/data/schema.json")).unwrap();
     let (mut right, mut wrong) = (0, 0);
     for Case { schema, components, values } in cases {
-        let record = Record { schema, components };
+        let record = Record::of_json(schema, components);
         assert_eq!(record.unsupported(), Vec::<String>::new(), "{}", record.schema);
         for (value, places) in values {
             let found: BTreeSet<String> =

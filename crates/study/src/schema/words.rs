@@ -7,7 +7,11 @@ use serde_json::Value;
 const LONGEST: usize = 100;
 
 impl Record {
-    /// What a value must be, such as `a number from 0 to 100`.
+    /// What a value of it must be, such as `a number from 0 to 100`.
+    pub fn in_words(&self) -> String {
+        self.words(&self.schema)
+    }
+
     pub(super) fn words(&self, schema: &Value) -> String {
         let schema = self.resolve(schema);
         if let Some(only) = schema.get("const") {

@@ -292,13 +292,13 @@ async fn over_http(data: &Path, study: &StudyDefinition) -> Result<(f64, f64)> {
     let _ = server.ready().await;
     let address = server.address();
     let body = serde_json::json!({ "password": PASSWORD }).to_string();
-    let signed_in = request(address, "POST", "/api/v1/login", "", body).await?;
+    let signed_in = request(address, "POST", "/api/v1/auth/session", "", body).await?;
     let cookie = signed_in
         .lines()
         .find_map(|line| line.strip_prefix("set-cookie: ")?.split(';').next())
         .context("the server gave no cookie")?
         .to_owned();
-    let path = format!("/api/v1/admin/studies/{}/results", study.id);
+    let path = format!("/api/v1/studies/{}/versions/current/results", study.id);
     let mut seconds = [0.0; 2];
     for took in &mut seconds {
         let begun = Instant::now();

@@ -1,0 +1,29 @@
+//! The wire: every type that a request or an answer is made of, typed once. The OpenAPI document, the checks of what comes in and the
+//! pages' TypeScript are read from these.
+
+mod answers;
+mod auth;
+mod lists;
+mod problem;
+mod refusals;
+mod sessions;
+mod studies;
+mod versions;
+
+pub use answers::{
+    Answer, AnswerCommon, Arrangement, Device, FrameLog, Length, Side, StepFrames, StepTimes,
+    TwoAlternativeAnswer, TwoIntervalAnswer, Which,
+};
+pub use auth::{SignIn, SignedIn};
+pub use lists::ListQuery;
+pub use problem::{Problem, ProblemCode, StoredAnswer};
+pub use sessions::{
+    Acknowledgement, Completion, CreatedSession, IntervalSettings, Known, NewSession, Role, SessionState,
+    SessionStatus, StimulusRef, Trial, TrialKind,
+};
+pub use studies::{
+    Codebook, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, VersionList,
+};
+pub use versions::{Pooling, VersionRef, With};
+
+pub(crate) use refusals::{refusals, responses};

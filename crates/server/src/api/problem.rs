@@ -1,0 +1,208 @@
+//! One error shape for every answer that is not a success: problem details (RFC 9457).
+
+use axum::Json;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use kelir_store::StoreError;
+use kelir_study::schema::{FieldError, worded};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+/// The media type of problem details.
+pub(crate) const PROBLEM_JSON: &str = "application/problem+json";
+/// An answer names so many wrong fields and no more.
+const MOST_ERRORS: usize = 100;
+
+worded! {
+    /// What kind of problem it is.
+    pub enum ProblemCode {
+        /// The body could not be read.
+        BadBody = "bad_body",
+        /// The body is no JSON, or no JSON object.
+        BadJson = "bad_json",
+        /// A part of the address or a parameter after `?` breaks its rule.
+        InvalidParameter = "invalid_parameter",
+        /// More than one version's hash begins like that.
+        AmbiguousVersion = "ambiguous_version",
+        /// The request holds no valid sign-in, or no token of this session.
+        Unauthorized = "unauthorized",
+        /// That is not the password.
+        WrongPassword = "wrong_password",
+        /// There is nothing of this name.
+        NotFound = "not_found",
+        /// The address does not take this method.
+        MethodNotAllowed = "method_not_allowed",
+        /// An answer can be stored only after consent.
+        NoConsent = "no_consent",
+        /// The trial has another answer already; `stored` is what stands.
+        AlreadyAnswered = "already_answered",
+        /// Trials have no answer yet: those in `missing`, or others that are still to be decided where `more` is true.
+        Incomplete = "incomplete",
+        /// The body is larger than the address takes.
+        TooLarge = "too_large",
+        /// The body is not sent as `application/json`.
+        NotJson = "not_json",
+        /// Fields of the body break their rules; `errors` names them all.
+        InvalidField = "invalid_field",
+        /// Too many wrong passwords; `Retry-After` says how long to wait.
+        TooManyTries = "too_many_tries",
+        /// Something is wrong on the server; its log has the reason.
+        Internal = "internal",
+        /// The study's images are still being made; `Retry-After` says when to ask again.
+        NotReady = "not_ready",
+        /// The study's images could not be made.
+        StimuliFailed = "stimuli_failed",
+    }
+}
+
+impl ProblemCode {
+    /// The status that answers of this code have.
+    pub fn status(self) -> StatusCode {
+        match self {
+            ProblemCode::BadBody
+            | ProblemCode::BadJson
+            | ProblemCode::InvalidParameter
+            | ProblemCode::AmbiguousVersion => StatusCode::BAD_REQUEST,
+            ProblemCode::Unauthorized | ProblemCode::WrongPassword => StatusCode::UNAUTHORIZED,
+            ProblemCode::NotFound => StatusCode::NOT_FOUND,
+            ProblemCode::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
+            ProblemCode::NoConsent | ProblemCode::AlreadyAnswered | ProblemCode::Incomplete => {
+                StatusCode::CONFLICT
+            }
+            ProblemCode::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+            ProblemCode::NotJson => StatusCode::UNSUPPORTED_MEDIA_TYPE,
+            ProblemCode::InvalidField => StatusCode::UNPROCESSABLE_ENTITY,
+            ProblemCode::TooManyTries => StatusCode::TOO_MANY_REQUESTS,
+            ProblemCode::Internal => StatusCode::INTERNAL_SERVER_ERROR,
+            ProblemCode::NotReady | ProblemCode::StimuliFailed => StatusCode::SERVICE_UNAVAILABLE,
+        }
+    }
+
+    /// Whether answers of this code say in `Retry-After` when to ask again.
+    pub fn says_when(self) -> bool {
+        matches!(self, ProblemCode::TooManyTries | ProblemCode::NotReady)
+    }
+}
+
+/// An answer that says what is wrong (RFC 9457).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Problem {
+    /// Always `about:blank`: `code` tells the kinds apart.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// The status in words.
+    pub title: String,
+    /// The HTTP status.
+    pub status: u16,
+    /// What kind of problem it is.
+    pub code: ProblemCode,
+    /// What happened, for people.
+    pub detail: String,
+    /// The fields or parameters that are wrong, all of them up to a hundred.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub errors: Vec<FieldError>,
+    /// With `incomplete`: indices of the decided trials that have no answer yet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub missing: Option<Vec<u32>>,
+    /// With `incomplete`: whether more trials are to be decided.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub more: Option<bool>,
+    /// With `already_answered`: what is stored.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub stored: Option<StoredAnswer>,
+    #[serde(skip)]
+    retry_after_s: Option<u64>,
+}
+
+/// An answer as it is stored.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StoredAnswer {
+    /// When the server committed it, ISO-8601 UTC.
+    pub received_at: String,
+    /// What analyses read of it.
+    pub answer: Map<String, Value>,
+    /// All that the browser sent; null once it was blanked by a withdrawal.
+    #[schema(required)]
+    pub payload: Option<Map<String, Value>>,
+}
+
+impl Problem {
+    /// A problem of a kind, told in a sentence. Boxed, as every handler's result has room for one.
+    pub fn new(code: ProblemCode, detail: impl Into<String>) -> Box<Problem> {
+        let status = code.status();
+        Box::new(Problem {
+            kind: "about:blank".to_owned(),
+            title: status.canonical_reason().unwrap_or_default().to_owned(),
+            status: status.as_u16(),
+            code,
+            detail: detail.into(),
+            errors: Vec::new(),
+            missing: None,
+            more: None,
+            stored: None,
+            retry_after_s: None,
+        })
+    }
+
+    /// The problem that these errors of a body or of parameters are; `errors` is not empty.
+    pub fn fields(code: ProblemCode, mut errors: Vec<FieldError>) -> Box<Problem> {
+        let said = |error: &FieldError| match error.pointer.strip_prefix('/') {
+            Some(field) => format!("{field} {}", error.rule),
+            None => format!("The body {}", error.rule),
+        };
+        let more = errors.len().saturating_sub(1);
+        let detail = errors.first().map(said).unwrap_or_default();
+        let detail = if more == 0 { format!("{detail}.") } else { format!("{detail}; {more} more.") };
+        errors.truncate(MOST_ERRORS);
+        Box::new(Problem { errors, ..*Problem::new(code, detail) })
+    }
+
+    /// One parameter that breaks a rule.
+    pub fn parameter(name: &str, value: &str, rule: impl Into<String>) -> Box<Problem> {
+        Problem::fields(ProblemCode::InvalidParameter, vec![FieldError::at(name, value, rule)])
+    }
+
+    pub(crate) fn not_found(what: &str) -> Box<Problem> {
+        Problem::new(ProblemCode::NotFound, format!("There is no such {what}."))
+    }
+
+    pub(crate) fn retry_after(mut self: Box<Self>, seconds: u64) -> Box<Problem> {
+        self.retry_after_s = Some(seconds);
+        self
+    }
+
+    /// Something here is broken: the log gets the reason, the browser does not.
+    pub(crate) fn internal(reason: impl std::fmt::Display) -> Box<Problem> {
+        tracing::error!("{reason}");
+        Problem::new(ProblemCode::Internal, "Something is wrong on the server; it has been noted.")
+    }
+}
+
+impl From<StoreError> for Box<Problem> {
+    fn from(error: StoreError) -> Self {
+        Problem::internal(error)
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let mut response = (self.code.status(), Json(&self)).into_response();
+        let headers = response.headers_mut();
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(PROBLEM_JSON));
+        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+        if let Some(seconds) = self.retry_after_s {
+            headers.insert(header::RETRY_AFTER, HeaderValue::from(seconds));
+        }
+        response
+    }
+}
+
+impl IntoResponse for Box<Problem> {
+    fn into_response(self) -> Response {
+        (*self).into_response()
+    }
+}

@@ -1,0 +1,196 @@
+//! Taking part: sessions, their trials, what is said back.
+
+use kelir_study::Kind;
+use kelir_study::schema::worded;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use utoipa::openapi::schema::{Object, ObjectBuilder, SchemaType, Type};
+use utoipa::{IntoParams, ToSchema};
+
+/// What is known of someone who begins.
+#[derive(Clone, Debug, Default, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewSession {
+    /// The parameters of the address that they came by.
+    #[schema(schema_with = parameters)]
+    pub params: Option<BTreeMap<String, String>>,
+    /// What the browser says about its display; kept as it comes.
+    pub display: Option<Map<String, Value>>,
+}
+
+/// At most 64 texts; the longest names and values that are taken.
+fn parameters() -> Object {
+    let text = |most| ObjectBuilder::new().schema_type(Type::String).max_length(Some(most));
+    ObjectBuilder::new()
+        .schema_type(SchemaType::from_iter([Type::Object, Type::Null]))
+        .max_properties(Some(64))
+        .property_names(Some(text(64)))
+        .additional_properties(Some(text(512)))
+        .description(Some(
+            "The parameters of the address that they came by. The first of `PROLIFIC_PID`, `workerId`, `subject_id` and `id` that is a \
+             plain name names the participant.",
+        ))
+        .build()
+}
+
+worded! {
+    /// How far a session is.
+    pub enum SessionStatus {
+        /// Consent has not been given yet.
+        Consent = "consent",
+        /// Trials are being answered.
+        InProgress = "in_progress",
+        /// Every trial is stored and the code has been given.
+        Completed = "completed",
+    }
+}
+
+worded! {
+    /// How stimuli are shown and asked about.
+    pub enum TrialKind {
+        /// Two stimuli at once, one of which is chosen.
+        TwoAlternative = "two-alternative",
+        /// Two stimuli one after the other, one of which is chosen.
+        TwoInterval = "two-interval",
+    }
+}
+
+worded! {
+    /// Which of a trial's stimuli it is.
+    pub enum Role {
+        /// The one on the left (two-alternative).
+        Left = "left",
+        /// The one on the right (two-alternative).
+        Right = "right",
+        /// The one shown first (two-interval).
+        First = "first",
+        /// The one shown second (two-interval).
+        Second = "second",
+    }
+}
+
+/// The bytes of one stimulus: what they hash to and where they are.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct StimulusRef {
+    /// SHA-256 of the bytes.
+    pub sha256: String,
+    /// Their address on this server.
+    pub url: String,
+}
+
+/// How long the steps of a two-interval trial last, in ms; 0 leaves a step out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct IntervalSettings {
+    /// Fixation mark before the first stimulus.
+    #[schema(minimum = 0)]
+    pub fixation_ms: f64,
+    /// First stimulus.
+    #[schema(minimum = 0)]
+    pub first_ms: f64,
+    /// Mask between the stimuli.
+    #[schema(minimum = 0)]
+    pub mask_ms: f64,
+    /// Second stimulus.
+    #[schema(minimum = 0)]
+    pub second_ms: f64,
+}
+
+/// One trial as the page needs it; its conditions stay on the server.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct Trial {
+    /// Place in the session, from 0.
+    pub trial_index: u32,
+    /// How it is shown and asked.
+    pub trial: TrialKind,
+    /// Place of its block in the study, from 0.
+    pub block_index: u32,
+    /// Place of its item in the block's file order, from 0.
+    pub item_index: u32,
+    /// Stills or animations.
+    pub kind: Kind,
+    /// What is shown, by role: `left` and `right`, or `first` and `second`.
+    pub shown: BTreeMap<Role, StimulusRef>,
+    /// Settings of its kind; null for kinds that have none.
+    #[schema(required)]
+    pub settings: Option<IntervalSettings>,
+    /// Width of its stimuli in pixels.
+    pub width: u32,
+    /// Height of its stimuli in pixels.
+    pub height: u32,
+    /// Whether its answer is stored.
+    pub answered: bool,
+}
+
+/// Where a session stands.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct SessionState {
+    /// Its id (UUID v7).
+    pub session_id: String,
+    /// The study's id.
+    pub study_id: String,
+    /// How far it is.
+    pub status: SessionStatus,
+    /// Whether consent has been given.
+    pub consented: bool,
+    /// The trials that are decided so far, by index from 0. The list only grows.
+    pub trials: Vec<Trial>,
+    /// Whether more trials will be decided, from the answers to these.
+    pub more: bool,
+    /// Most trials there can be.
+    pub most_trials: usize,
+    /// The first decided trial without an answer; null when there is none.
+    #[schema(required)]
+    pub next_trial: Option<u32>,
+    /// The code at the end, once completed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub completion_code: Option<String>,
+    /// Where to go on to, once completed, if the study leads anywhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub redirect: Option<String>,
+}
+
+/// A session that has just begun.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct CreatedSession {
+    /// Where it stands.
+    #[serde(flatten)]
+    pub state: SessionState,
+    /// The session's secret, for `Authorization: Bearer`; it is told this once.
+    pub token: String,
+}
+
+/// Which decided trials a page knows already.
+#[derive(Clone, Copy, Debug, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Known {
+    /// Number of trials that the page knows: those from this index on are told. Absent: none are.
+    pub known: Option<usize>,
+}
+
+/// That an answer is on disk.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct Acknowledgement {
+    /// Always true: what is not stored is refused.
+    pub acknowledged: bool,
+    /// The first decided trial without an answer; null when there is none.
+    #[schema(required)]
+    pub next_trial: Option<u32>,
+    /// Whether more trials will be decided.
+    pub more: bool,
+    /// The decided trials from `known` on; none without `known`.
+    pub trials: Vec<Trial>,
+}
+
+/// The end of a session.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Completion {
+    /// The code that says so, the same each time.
+    pub completion_code: String,
+    /// Where to go on to, if the study leads anywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub redirect: Option<String>,
+}

@@ -1,0 +1,204 @@
+//! What came of a version of a study: results, reports, tables.
+
+use super::{Answered, Fresh};
+use crate::api::{Codebook, Pooling, Problem, VersionRef, With, refusals};
+use crate::app::{App, LoadedStudy};
+use crate::export::{codebook, codebook_csv, responses_csv};
+use crate::extract::{Parameters, Query, Researcher};
+use crate::results::{StudyResults, pairs_csv, report_of, results_of};
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use kelir_report::{Document, Figures, StudyReport, html, markdown};
+use serde::Deserialize;
+use std::sync::Arc;
+use utoipa::IntoParams;
+
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Path)]
+pub(crate) struct VersionPath {
+    /// The study's id.
+    study: String,
+    /// The version: `current`, its hash, or the beginning of the hash, 8 digits or more.
+    version: String,
+}
+
+refusals!(Chosen: Unauthorized, InvalidParameter, AmbiguousVersion, NotFound);
+
+type File = Result<Response, Box<Problem>>;
+
+/// The study of which this version and these others are asked for. Only the version that is served can be named, so that it is the
+/// one meant, and there are no others to pool.
+fn chosen<'a>(app: &'a App, path: &VersionPath, pooling: &Pooling) -> Result<&'a LoadedStudy, Box<Problem>> {
+    let loaded = app.study(&path.study)?;
+    let current = loaded.config_hash.as_str();
+    VersionRef::read("version", &path.version)?.among([current], current)?;
+    if let With::These(versions) = pooling.with()? {
+        for version in versions {
+            version.among([current], current)?;
+        }
+    }
+    Ok(loaded)
+}
+
+/// The results in short: the paper's test for each block, the scale, the stimuli.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/results", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "The results.", body = StudyResults), Chosen)
+)]
+pub(crate) async fn get_results(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> Answered<StudyResults> {
+    let loaded = chosen(&app, &path, &pooling)?;
+    let answers = loaded.answers(&app.store).await?;
+    Ok(Fresh(results_of(&app.store, &loaded.study, &answers).await?))
+}
+
+/// The full report: every number there is.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/report", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "The report.", body = StudyReport), Chosen)
+)]
+pub(crate) async fn get_report(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> Answered<StudyReport> {
+    Ok(Fresh(judged(&app, path, pooling).await?))
+}
+
+/// The full report as one HTML file.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/report.html", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/html"), Chosen)
+)]
+pub(crate) async fn get_report_html(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let name = format!("{}-report.html", path.study);
+    let document = Document::of(&judged(&app, path, pooling).await?);
+    Ok(download("text/html; charset=utf-8", &name, html(&document)))
+}
+
+/// The full report as one Markdown file, its figures within.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/report.md", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/markdown"), Chosen)
+)]
+pub(crate) async fn get_report_md(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let name = format!("{}-report.md", path.study);
+    let document = Document::of(&judged(&app, path, pooling).await?);
+    Ok(download("text/markdown; charset=utf-8", &name, markdown(&document, &Figures::Embedded).text))
+}
+
+/// The full report of a study. It resamples participants, which keeps a core busy: one at a time.
+async fn judged(app: &Arc<App>, path: VersionPath, pooling: Pooling) -> Result<StudyReport, Box<Problem>> {
+    chosen(app, &path, &pooling)?;
+    let _permit = app.reporting.acquire().await.map_err(Problem::internal)?;
+    let task = app.clone();
+    // On a thread of its own kind: answering participants must not wait for it.
+    let judged = tokio::task::spawn_blocking(move || {
+        tokio::runtime::Handle::current().block_on(async {
+            let loaded = chosen(&task, &path, &pooling)?;
+            let answers = loaded.answers(&task.store).await?;
+            report_of(&task.store, &loaded.study, &answers).await.map_err(Box::<Problem>::from)
+        })
+    });
+    judged.await.map_err(Problem::internal)?
+}
+
+/// One row a trial, all that is known of it.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/responses.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_responses_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let loaded = chosen(&app, &path, &pooling)?;
+    let table = responses_csv(&app.store, &loaded.study).await?;
+    Ok(csv(&format!("{}-responses.csv", path.study), table))
+}
+
+/// The choices as pwcmp reads them, one row a trial.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/pairs.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_pairs_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let loaded = chosen(&app, &path, &pooling)?;
+    let table = pairs_csv(&app.store, &loaded.study).await?;
+    Ok(csv(&format!("{}-pairs.csv", path.study), table))
+}
+
+/// What each column of `responses.csv` is, as a table.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/codebook.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_codebook_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    chosen(&app, &path, &pooling)?;
+    Ok(csv(&format!("{}-codebook.csv", path.study), codebook_csv()))
+}
+
+/// What each column of `responses.csv` is.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/codebook.json", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "The codebook.", body = Codebook), Chosen)
+)]
+pub(crate) async fn get_codebook(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> Answered<Codebook> {
+    chosen(&app, &path, &pooling)?;
+    Ok(Fresh(Codebook { columns: codebook() }))
+}
+
+fn csv(name: &str, text: String) -> Response {
+    download("text/csv; charset=utf-8", name, text)
+}
+
+/// A file to keep, which no browser opens in the console's own origin.
+fn download(media_type: &str, name: &str, text: String) -> Response {
+    let headers = [
+        (header::CONTENT_TYPE, media_type.to_owned()),
+        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\"")),
+        (header::CACHE_CONTROL, "no-store".to_owned()),
+    ];
+    (headers, text).into_response()
+}
