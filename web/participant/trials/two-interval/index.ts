@@ -9,8 +9,8 @@ export default {
   legend: {
     title: "Two pictures, one after the other",
     answers: [
-      { keys: ["←", "1"], label: "first image" },
-      { keys: ["→", "2"], label: "second image" },
+      { keys: ["←", "1"], label: "first" },
+      { keys: ["→", "2"], label: "second" },
     ],
   },
   parameters: (given) => ({
