@@ -9,8 +9,10 @@ export type Trial = Schemas["Trial"];
 export type StimulusRef = Schemas["StimulusRef"];
 export type Acknowledgement = Schemas["Acknowledgement"];
 export type Completion = Schemas["Completion"];
+export type TwoAlternativeAnswer = Schemas["TwoAlternativeAnswer"];
+export type TwoIntervalAnswer = Schemas["TwoIntervalAnswer"];
 /** What is sent for one trial; times in ms. */
-export type Answer = Schemas["TwoAlternativeAnswer"] | Schemas["TwoIntervalAnswer"];
+export type Answer = TwoAlternativeAnswer | TwoIntervalAnswer;
 
 /** Who is asking: the session and its secret. */
 export interface Credentials {

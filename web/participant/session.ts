@@ -163,7 +163,7 @@ export class Session {
       onLine: (line) => {
         const goOn = this.#waiting ? "this page goes on by itself when it is back" : "you can go on";
         const kept = this.#store.durable ? `Your answers are kept here and sent later; ${goOn}.` : `Please keep this page open; your answers are sent later${this.#waiting ? `, and ${goOn}` : ""}.`;
-        const refused = "An answer could not be stored yet. It is kept here; you can go on.";
+        const refused = `An answer could not be stored yet. It is kept here${this.#waiting ? "" : "; you can go on"}.`;
         // While a retry is under way the sentence stays: it would flicker otherwise.
         if (line !== "sending") say("answers", line === "waiting" ? `No connection. ${kept}` : line === "refused" ? refused : null);
       },

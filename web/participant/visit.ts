@@ -36,9 +36,8 @@ export class Visit {
   }
 
   async run(): Promise<void> {
-    const { trial_kinds } = this.#study;
-    const kinds = await Promise.all(trial_kinds.map(kindOf));
     if (this.#session.state?.status !== "completed") {
+      const kinds = await Promise.all(this.#study.trial_kinds.map(kindOf));
       // What comes next is asked when a page or a trial is over: jsPsych runs on into what has been added to its timeline by then.
       const timeline: Node[] = [];
       const step = async () => {

@@ -1,5 +1,9 @@
 // Kinds of trial: what the page makes of those it knows, of several in one study, and of those it does not know.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { cpSync, mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
 import { test } from "node:test";
 import { build } from "esbuild";
 import { intervals, material } from "../mock-study.ts";
@@ -57,6 +61,26 @@ test("a kind that the page doesn't know: it says so before anything is asked, or
   v.problems.length = 0;
 });
 
+test("a kind is added by its folder, and by nothing else", async (t) => {
+  const web = mkdtempSync(join(tmpdir(), "kelir-kind-"));
+  t.after(() => rmSync(web, { recursive: true }));
+  for (const part of ["participant", "console", "shared", "build.mjs", "package.json"]) cpSync(part, join(web, part), { recursive: true });
+  symlinkSync(resolve("node_modules"), join(web, "node_modules"));
+  mkdirSync(join(web, "participant/trials/added"));
+  const legend = '{ title: "Added", answers: [{ keys: ["←"], label: "this" }, { keys: ["→"], label: "that" }] }';
+  writeFileSync(join(web, "participant/trials/added/index.ts"), `import pair from "../two-alternative/index.ts"; export default { ...pair, legend: ${legend} };`);
+  execFileSync("node", ["build.mjs", join(web, "dist")], { cwd: web });
+  const stuff = material();
+  stuff.trials = stuff.trials.slice(0, 1).map((trial) => ({ ...trial, trial: "added" }));
+  const v = await visit(t, { stuff, dist: join(web, "dist") });
+  await v.hook("consent-agree").click();
+  await v.page.getByText("← this").waitFor();
+  await v.hook("start").click();
+  await answer(v, 0, 1, "right", "1");
+  await v.hook("completion-code").waitFor();
+  // The page without the folder doesn't know it: that is the test before this one.
+});
+
 test("a pen is a pen", async (t) => {
   const v = await visit(t);
   await begin(v);
@@ -98,6 +122,22 @@ test("what was on the screen is stored: width, arrangement, and how long it was 
   const added = new Set(["css_width_px", "min_visible_ms"]);
   const before = ["choice", "rt", "onset", "input", "scale", "arrangement", "device_pixel_ratio", "viewport", "refresh_hz", "hidden_ms", "time_elapsed", "trial_type", "plugin_version", "reload_count", "timestamp"];
   assert.deepEqual(Object.keys(first).filter((column) => !added.has(column)), before);
+});
+
+test("scale and width are those that the participant saw, pinch zoom included", async (t) => {
+  const v = await visit(t, { options: { viewport: { width: 390, height: 844 }, deviceScaleFactor: 3, hasTouch: true, isMobile: true } });
+  await begin(v);
+  await answer(v, 0, 1);
+  await position(v.page, 1);
+  const cdp = await v.context.newCDPSession(v.page);
+  await cdp.send("Emulation.setPageScaleFactor", { pageScaleFactor: 2 });
+  await v.page.waitForFunction(() => visualViewport.scale === 2);
+  await v.page.keyboard.press("ArrowLeft");
+  await v.page.waitForTimeout(300);
+  const [plain, zoomed] = rows(v.mock);
+  assert.deepEqual([plain.scale, plain.css_width_px], [1, 197.333]);
+  assert.deepEqual([zoomed.scale, zoomed.css_width_px], [2, 394.667]);
+  for (const row of [plain, zoomed]) assert.ok(Math.abs(row.css_width_px - (592 * row.scale) / row.device_pixel_ratio) < 1e-3);
 });
 
 /** jsPsych's own simulation of a kind, in a page without our server. */
