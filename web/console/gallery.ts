@@ -1,23 +1,24 @@
 /** The stimuli as participants see them, and where each came from. */
 import { h } from "../shared/dom.ts";
 import { significant } from "../shared/format.ts";
-import type { Measured, Stimulus } from "./api.ts";
+import type { Results, Stimulus } from "./api.ts";
 import { number } from "./copy.ts";
+import { flatten, measuredError, standardError } from "./provenance.ts";
 
-/** Every pair with its conditions side by side. */
-export function gallery(stimuli: readonly Stimulus[]): HTMLElement[] {
-  const pairs = new Map<string, Stimulus[]>();
+/** Every item with its conditions side by side; what pooled versions showed differently is marked. */
+export function gallery(stimuli: readonly Stimulus[], different: Results["different_stimuli"]): HTMLElement[] {
+  const items = new Map<string, Stimulus[]>();
   for (const stimulus of stimuli) {
-    pairs.set(stimulus.pair, [...(pairs.get(stimulus.pair) ?? []), stimulus]);
+    items.set(stimulus.item, [...(items.get(stimulus.item) ?? []), stimulus]);
   }
-  return [...pairs].map(([name, members]) =>
-    h("section", { class: "pair" }, h("h3", {}, name), h("div", { class: "conditions" }, ...members.map(card))),
+  const differs = ({ item, condition }: Stimulus) => different.some((other) => other.item === item && other.condition === condition);
+  return [...items].map(([name, members]) =>
+    h("section", { class: "pair" }, h("h3", {}, name), h("div", { class: "conditions" }, ...members.map((stimulus) => card(stimulus, differs(stimulus))))),
   );
 }
 
-function card(stimulus: Stimulus): HTMLElement {
-  const { error, ...rest } = stimulus.provenance;
-  const facts = flatten(rest);
+function card(stimulus: Stimulus, differs: boolean): HTMLElement {
+  const facts: Array<[string, unknown]> = [["sha256", stimulus.sha256], ...flatten({ pixels_sha256: stimulus.pixels_sha256 }), ...flatten(stimulus.provenance)];
   return h(
     "figure",
     { class: "stimulus" },
@@ -26,31 +27,30 @@ function card(stimulus: Stimulus): HTMLElement {
       "figcaption",
       {},
       h("strong", {}, stimulus.condition),
+      ...(differs ? [h("span", { class: "warning" }, "not the same in all pooled versions")] : []),
       ...errorOf(stimulus),
       h(
         "details",
         {},
         h("summary", {}, "Where it came from"),
-        h("dl", {}, ...[["sha256", stimulus.sha256] as [string, unknown], ...facts, ...flatten(error ?? {}, "error")].flatMap(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, shown(value))])),
+        h("dl", {}, ...facts.flatMap(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, shown(value))])),
       ),
     ),
   );
 }
 
-/** What is known of a stimulus's error: against a reference, or its own spread, or nothing (a picture from elsewhere). */
-function errorOf({ provenance: { error, standard_error: own } }: Stimulus): HTMLElement[] {
-  if (error) return measured(error);
-  if (!own) return [h("span", { class: "fact" }, "error not known")];
-  return [h("span", { class: "fact" }, "standard error where sampled: RMS ", number(significant(own.rms_sampled), own.rms_sampled), ", max ", number(significant(own.max), own.max), " of full scale")];
-}
-
-/** The error in a line: where shadows are soft, because that is where techniques differ. */
-function measured({ reference, penumbra, floor }: Measured): HTMLElement[] {
+/** What is known of a stimulus's error: against a reference, where shadows are soft (there techniques differ), or its own spread, or nothing. */
+function errorOf({ provenance }: Stimulus): HTMLElement[] {
+  const measured = measuredError(provenance);
+  const own = standardError(provenance);
+  if (measured === null && own === null) return [h("span", { class: "fact" }, "error not known")];
+  if (measured === null) return [h("span", { class: "fact" }, "standard error where sampled: RMS ", number(significant(own?.rms), own?.rms), ", max ", number(significant(own?.max), own?.max), " of full scale")];
+  const { reference, penumbra, floor } = measured;
   const { technique, ...knobs } = reference;
   const detail = Object.entries(knobs).flatMap(([name, value]) => (typeof value === "number" || typeof value === "string" ? [`${words(name)} ${value}`] : []));
   return [
     h("span", { class: "fact" }, "penumbra error: RMSE ", number(significant(penumbra.rmse), penumbra.rmse), ", max ", number(significant(penumbra.max), penumbra.max), " of full scale"),
-    h("span", { class: "fact" }, `against ${[technique, ...detail].join(", ")}`, ...(floor === null ? [] : [", whose own error is ", number(significant(floor), floor)])),
+    h("span", { class: "fact" }, `against ${[String(technique), ...detail].join(", ")}`, ...(floor === null ? [] : [", whose own error is ", number(significant(floor), floor)])),
   ];
 }
 
@@ -63,18 +63,9 @@ const shown = (value: unknown) =>
       ? number(value.slice(0, 12), value)
       : number(String(value), String(value));
 
-/** `{ a: { b: 1 } }` as `[["a.b", 1]]`; lists of plain values stay in one piece. */
-export function flatten(value: unknown, name = ""): Array<[string, unknown]> {
-  if (Array.isArray(value) && value.every((item) => item === null || typeof item !== "object")) return [[name, value.join(", ")]];
-  if (value !== null && typeof value === "object") {
-    return Object.entries(value).flatMap(([key, inner]) => flatten(inner, name === "" ? key : `${name}.${key}`));
-  }
-  return value === undefined || value === null ? [] : [[name, value]];
-}
-
 /** A still as it is; an animation as its first frame, with a button that plays it. */
-function picture({ sha256, pair, condition }: Stimulus): HTMLElement {
-  const image = h("img", { alt: `${pair}, ${condition}`, decoding: "async", src: address(sha256) });
+function picture({ sha256, item, condition }: Stimulus): HTMLElement {
+  const image = h("img", { alt: `${item}, ${condition}`, decoding: "async", src: address(sha256) });
   const holder = h("div", { class: "picture" }, image);
   image.addEventListener(
     "error",

@@ -1,9 +1,10 @@
 /** The researcher's page: sign in, a list of studies, one study. Addresses are real: back, reload and links work. */
 import { h } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
-import { fetchStudies, login, logout, type StudyRow } from "./api.ts";
+import { fetchStudies, login, logout, type StudySummary } from "./api.ts";
 import { copyOnClick, number } from "./copy.ts";
-import { showStudy, statusText } from "./study.ts";
+import { statusText } from "./status.ts";
+import { showStudy, UnknownVersion } from "./study.ts";
 import "./style.css";
 
 const main = h("main", {});
@@ -21,7 +22,7 @@ async function show(): Promise<void> {
   const path = location.pathname.replace(/\/+$/, "");
   const study = path.match(/^\/console\/studies\/([^/]+)$/)?.[1];
   try {
-    if (study !== undefined) await showStudy(main, decodeURIComponent(study), signal);
+    if (study !== undefined) await showStudy(main, { id: decodeURIComponent(study), search: new URLSearchParams(location.search), go, signal });
     else if (path === "/console" || path === "/console/studies") await showStudies(path === "/console");
     else if (path === "/console/login") return go("/console", true);
     else message("There is no such page", "The studies are one step back.", link("/console/studies", "All studies"));
@@ -29,6 +30,9 @@ async function show(): Promise<void> {
   } catch (error) {
     if (signal.aborted) return;
     if (error instanceof Refused && (error.status === 401 || error.status === 403)) return showLogin();
+    if (error instanceof UnknownVersion) {
+      return message("There is no such version of this study", `No version, or more than one, begins with ${error.message}.`, link(path, "The current version"));
+    }
     if (error instanceof Refused && error.status === 404) {
       return message("There is no such study here", "It may have been renamed. Studies are files in the server's data folder.", link("/console/studies", "All studies"));
     }
@@ -103,7 +107,7 @@ async function showStudies(forward: boolean): Promise<void> {
   const [only] = studies;
   if (forward && only !== undefined && studies.length === 1) return go(address(only), true);
   document.title = "Studies · kelir";
-  const row = (study: StudyRow) => {
+  const row = (study: StudySummary) => {
     const { completed, in_progress, started } = study.participants;
     return h("tr", {}, h("th", { scope: "row" }, link(address(study), study.title), ...[statusText(study)].map((text) => text !== null && h("span", { class: "note" }, text))), ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))));
   };
@@ -120,7 +124,7 @@ async function showStudies(forward: boolean): Promise<void> {
   main.replaceChildren(h("section", {}, h("h1", { tabindex: -1 }, "Studies"), content));
 }
 
-const address = (study: StudyRow) => `/console/studies/${encodeURIComponent(study.id)}`;
+const address = (study: StudySummary) => `/console/studies/${encodeURIComponent(study.id)}`;
 
 document.addEventListener("click", (event) => {
   const anchor = event.target instanceof Element ? event.target.closest("a") : null;
@@ -128,7 +132,7 @@ document.addEventListener("click", (event) => {
   if (anchor === null || !plain || anchor.target !== "" || anchor.hasAttribute("download")) return;
   if (anchor.origin !== location.origin || !/^\/console(\/|$)/.test(anchor.pathname)) return;
   event.preventDefault();
-  go(anchor.pathname + anchor.hash);
+  go(anchor.pathname + anchor.search + anchor.hash);
 });
 copyOnClick();
 addEventListener("popstate", () => void show());

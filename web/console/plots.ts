@@ -26,8 +26,9 @@ export function choiceDistribution(block: Block): SVGSVGElement {
   const x = (choices: number) => box.left + slot * (choices + 0.5);
   const y = (n: number) => box.bottom - ((box.bottom - box.top - 22) * n) / most;
   const summary = counts.map((n, k) => `${n} chose ${block.target} ${k} times`).join(", ");
-  const mean = block.mean === null ? "" : ` Mean ${fixed(block.mean, 3)}, chance ${fixed(block.mu, 1)}.`;
-  const svg = figure(width, height, `${block.title}: choices of ${block.target}`, `${summary}.${mean}`);
+  const mean = block.mean ?? null;
+  const summed = mean === null ? "" : ` Mean ${fixed(mean, 3)}, chance ${fixed(block.mu, 1)}.`;
+  const svg = figure(width, height, `${block.title}: choices of ${block.target}`, `${summary}.${summed}`);
 
   const bar = Math.min(64, slot * 0.62);
   counts.forEach((n, k) => {
@@ -42,15 +43,15 @@ export function choiceDistribution(block: Block): SVGSVGElement {
     s("line", { class: "chance", x1: x(block.mu), x2: x(block.mu), y1: box.top - 8, y2: box.bottom }),
   );
   // Two labels on one line: each on its own side, so that they never meet.
-  const after = block.mean === null || block.mean <= block.mu;
+  const after = mean === null || mean <= block.mu;
   const chance = after ? { x: x(block.mu) + 6, "text-anchor": "start" } : { x: x(block.mu) - 6, "text-anchor": "end" };
   svg.append(s("text", { class: "label", y: box.top - 12, ...chance }, "chance"));
-  if (block.mean !== null) {
-    const at = x(block.mean);
+  if (mean !== null) {
+    const at = x(mean);
     const label = after ? { x: Math.max(box.left, at - 8), "text-anchor": at < 84 ? "start" : "end" } : { x: at + 8, "text-anchor": at > width - 84 ? "end" : "start" };
     svg.append(
       s("line", { class: "mean", x1: at, x2: at, y1: box.top - 20, y2: box.bottom }),
-      s("text", { class: "mean-label", y: box.top - 28, ...(at < 84 || at > width - 84 ? { ...label, x: Math.min(Math.max(at, box.left), box.right) } : label) }, `mean ${fixed(block.mean, 3)}`),
+      s("text", { class: "mean-label", y: box.top - 28, ...(at < 84 || at > width - 84 ? { ...label, x: Math.min(Math.max(at, box.left), box.right) } : label) }, `mean ${fixed(mean, 3)}`),
     );
   }
   // Above the lines, with a halo, so that they can be read where a line crosses.

@@ -6,11 +6,13 @@ import { copyButton, number, tableText } from "./copy.ts";
 import { errorPlot, points } from "./scatter.ts";
 import { niceTicks, type Strip, strips } from "./strips.ts";
 
+type Bounds = Pick<Interval, "low" | "high">;
+
 const percent = (x: number) => `${fixed(100 * x, 0)}%`;
 
 /** Every part of the report that has something to say; `width` is the room for plots, CSS pixels. */
 export function drawReport(report: Report, width: number): Node[] {
-  const answered = report.blocks.filter((block) => block.n > 0 || block.by_item.some((pair) => pair.target !== null));
+  const answered = report.blocks.filter((block) => block.n > 0 || block.by_item.some((pair) => pair.target));
   if (answered.length === 0) return [h("h2", {}, "Beyond the t-test"), h("p", { class: "empty" }, "Effect sizes, intervals, equivalence and Bayes factors appear here with the first answers.")];
   return [
     h("h2", {}, "Beyond the t-test"),
@@ -27,9 +29,9 @@ export function drawReport(report: Report, width: number): Node[] {
 
 /** How many preferred the target: each block over all its choices, then each pair alone. */
 function preferences(blocks: readonly BlockReport[]): Node[] {
-  const row = (label: string, share: Proportion | null, more: Partial<Strip>): Strip => {
-    const bounds = share === null ? null : (share.by_participant ?? share.wilson);
-    const text = share === null ? "no answers" : `${percent(share.proportion)}, ${percent(bounds?.low ?? NaN)} to ${percent(bounds?.high ?? NaN)}`;
+  const row = (label: string, share: Proportion | null | undefined, more: Partial<Strip>): Strip => {
+    const bounds = share?.by_participant ?? share?.wilson;
+    const text = !share ? "no answers" : `${percent(share.proportion)}, ${percent(bounds?.low ?? NaN)} to ${percent(bounds?.high ?? NaN)}`;
     return { label, value: share?.proportion ?? null, low: bounds?.low ?? null, high: bounds?.high ?? null, text, ...more };
   };
   const rows = blocks.flatMap((block) => [
@@ -42,7 +44,7 @@ function preferences(blocks: readonly BlockReport[]): Node[] {
 
 function times(blocks: readonly BlockReport[]): Node[] {
   const rows = blocks.flatMap((block): Strip[] => {
-    if (block.rt_ms === null) return [];
+    if (!block.rt_ms) return [];
     const [q1, median, q3] = [block.rt_ms.q1, block.rt_ms.median, block.rt_ms.q3].map((ms) => ms / 1000) as [number, number, number];
     return [{ label: block.title, value: median, low: q1, high: q3, text: `${fixed(median, 2)} s, ${fixed(q1, 2)} to ${fixed(q3, 2)}` }];
   });
@@ -64,9 +66,10 @@ function errors(blocks: readonly BlockReport[], report: Report, width: number): 
 
 /** Statistics down, blocks across. */
 function statistics(report: Report): Node[] {
-  const { blocks, blocks_with_excluded: everybody } = report;
-  const within = (bounds: Interval | null | undefined, decimals: number) => (bounds ? ` (${interval(bounds.low, bounds.high, decimals)})` : "");
-  const estimate = (x: number | null | undefined, bounds: Interval | null | undefined, decimals = 2) => [number(fixed(x, decimals), x), number(within(bounds, decimals), bounds ? `${bounds.low} ${bounds.high}` : null)];
+  const { blocks } = report;
+  const everybody = report.blocks_with_excluded ?? null;
+  const within = (bounds: Bounds | null | undefined, decimals: number) => (bounds ? ` (${interval(bounds.low, bounds.high, decimals)})` : "");
+  const estimate = (x: number | null | undefined, bounds: Bounds | null | undefined, decimals = 2) => [number(fixed(x, decimals), x), number(within(bounds, decimals), bounds ? `${bounds.low} ${bounds.high}` : null)];
   const logit = (c: Coefficient | undefined) => (c === undefined ? [number("–", null)] : [...estimate(c.estimate, c), h("span", { class: "quiet" }, ", p ", number(pValue(c.p), c.p))]);
   const tost = (block: BlockReport, unit: "points" | "sd") => {
     const found = block.analysis.equivalence.find((e) => unit in e.bounds);
@@ -86,7 +89,7 @@ function statistics(report: Report): Node[] {
     ["Intraclass correlation", "how alike one participant's choices are", (b) => [number(fixed(b.analysis.intraclass?.icc, 3), b.analysis.intraclass?.icc)]],
     ["Log odds, cluster-robust", "95% interval", (b) => logit(b.analysis.robust_logit?.coefficients[0])],
     ["Log odds, random intercept", "95% interval", (b) => logit(b.analysis.mixed_logit?.coefficients[0])],
-    ["Chose the left picture", "far from 0.5: a bias of side", (b) => estimate(b.left?.proportion, b.left?.wilson, 3)],
+    [firstRole(blocks), "far from 0.5: a bias of side or order", (b) => estimate(b.first?.proportion, b.first?.wilson, 3)],
     ["Power at d = 0.2, 0.5, 0.8", "with this n", (b) => b.analysis.power.flatMap((plan, i) => [...(i > 0 ? [asNode(", ")] : []), number(fixed(plan.power, 2), plan.power)])],
     ["Found with 80% power", "true effect in SD, with this n", (b) => [number(fixed(b.analysis.detectable?.d, 2), b.analysis.detectable?.d)]],
     ...(everybody === null ? [] : [["t, p with the excluded", "everybody's answers", (_: BlockReport, i: number) => [number(fixed(everybody[i]?.t, 3), everybody[i]?.t), ", p ", number(pValue(everybody[i]?.p), everybody[i]?.p)].map(asNode)] as [string, string, (block: BlockReport, i: number) => Node[]]]),
@@ -105,6 +108,12 @@ function statistics(report: Report): Node[] {
   ];
 }
 
+/** What the share of the first role is of: the left picture, the first one, or either where a study has both kinds of trial. */
+function firstRole(blocks: readonly BlockReport[]): string {
+  const roles = new Set(blocks.map((block) => block.first_role));
+  return `Chose the ${[...roles].join(" or the ")} picture`;
+}
+
 const asNode = (part: Node | string): Node => (typeof part === "string" ? document.createTextNode(part) : part);
 
 function notes(blocks: readonly BlockReport[]): Node[] {
@@ -114,7 +123,7 @@ function notes(blocks: readonly BlockReport[]): Node[] {
 
 function scale({ scale: found, scale_note }: Report): Node[] {
   const heading = h("h3", {}, "All conditions on one scale");
-  if (found === null) return scale_note === null ? [] : [heading, h("p", { class: "quiet" }, scale_note)];
+  if (!found) return !scale_note ? [] : [heading, h("p", { class: "quiet" }, scale_note)];
   const rows = found.conditions.map(({ condition, jod, low, high }): Strip => ({ label: condition, value: jod, low, high, text: `${fixed(jod, 2)}, ${interval(low, high, 2)}` }));
   const reach = niceTicks(Math.max(...rows.flatMap((row) => [Math.abs(row.low ?? 0), Math.abs(row.high ?? 0)]), 0.1), 3);
   const ticks = [...reach.slice(1).map((t) => -t).reverse(), ...reach];
@@ -123,12 +132,11 @@ function scale({ scale: found, scale_note }: Report): Node[] {
 }
 
 /** A reason of the study file's rules, in words. */
-function reason({ reason: name, trials = 0, allowed = 0, answered = 0 }: Report["excluded"][number]["reasons"][number]): string {
-  if (name === "too_fast") return `${count(trials, "answer")} too fast, ${allowed} allowed`;
-  if (name === "failed_catch_trials") return `${count(trials, "catch trial")} failed, ${allowed} allowed`;
-  if (name === "straight_lining") return `the same side in all ${count(trials, "trial")}`;
-  if (name === "incomplete") return `${answered} of ${count(trials, "trial")} answered`;
-  return name.replaceAll("_", " ");
+function reason(why: Report["excluded"][number]["reasons"][number]): string {
+  if (why.reason === "too_fast") return `${count(why.trials, "answer")} too fast, ${why.allowed} allowed`;
+  if (why.reason === "failed_catch_trials") return `${count(why.trials, "catch trial")} failed, ${why.allowed} allowed`;
+  if (why.reason === "straight_lining") return `the same side in all ${count(why.trials, "trial")}`;
+  return `${why.answered} of ${count(why.trials, "trial")} answered`;
 }
 
 function exclusions({ excluded }: Report): Node[] {
@@ -139,9 +147,15 @@ function exclusions({ excluded }: Report): Node[] {
 
 function methods({ methods: texts, kelir_version, chain }: Report): Node[] {
   const whole = texts.join(" ");
-  const sound = chain.broken === null ? [`All ${count(chain.rows, "stored answer")} are what was written, in order (chain ends in `, number(chain.head.slice(0, 12), chain.head), ")."] : [`Answer ${chain.broken[0]} is not what was written: ${chain.broken[1]}. Do not use these data before you know why.`];
+  const judged = ` Judged by kelir ${kelir_version}.`;
   return [
     h("details", { class: "methods" }, h("summary", {}, "Methods, as a paper's section"), ...texts.map((text) => h("p", {}, text)), h("p", {}, copyButton("Copy the text", () => whole, { class: "link" }))),
-    h("p", { class: chain.broken === null ? "quiet" : "banner" }, ...sound, ` Judged by kelir ${kelir_version}.`),
+    ...(chain.faults.length === 0
+      ? [h("p", { class: "quiet" }, `All ${count(chain.rows, "stored answer")} are what was written, in order (chain ends in `, number(chain.head.slice(0, 12), chain.head), ").", ...blanked(chain), judged)]
+      : [h("div", { class: "banner" }, h("p", {}, "Not all stored rows are what was written. Do not use these data before you know why."), h("ul", {}, ...chain.faults.map(fault)), h("p", {}, judged))]),
   ];
 }
+
+const blanked = ({ blanked: n }: Report["chain"]) => (n > 0 ? [` ${count(n, "payload")} blanked by a withdrawal.`] : []);
+
+const fault = ({ chain, seq, what, note }: Report["chain"]["faults"][number]) => h("li", {}, `${chain}, row ${seq}: ${what}${note ? ` (${note})` : ""}`);

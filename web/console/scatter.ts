@@ -1,16 +1,17 @@
 /** How wrong a picture is against how many prefer it. */
 import { s } from "../shared/dom.ts";
 import { fixed, significant } from "../shared/format.ts";
-import type { BlockReport, Interval, Stimulus } from "./api.ts";
+import type { BlockReport, Stimulus } from "./api.ts";
 import { figure } from "./plots.ts";
+import { measuredError } from "./provenance.ts";
 
 interface Point {
-  pair: string;
+  item: string;
   condition: string;
   target: boolean;
   error: number;
   share: number;
-  interval: Interval;
+  interval: { low: number; high: number };
 }
 
 /** Every stimulus with a measured error and answers: its RMSE in penumbra, and the share of participants who preferred it. */
@@ -18,13 +19,13 @@ export function points(blocks: readonly BlockReport[], stimuli: readonly Stimulu
   return blocks.flatMap((block) =>
     block.by_item.flatMap(({ id, target }) =>
       stimuli
-        .filter((stimulus) => stimulus.pair === id && target !== null && block.conditions.includes(stimulus.condition))
+        .filter((stimulus) => stimulus.item === id && block.conditions.includes(stimulus.condition))
         .flatMap(({ condition, provenance }): Point[] => {
-          const error = provenance.error?.penumbra.rmse;
-          if (error === undefined || !(error > 0) || target === null) return [];
+          const error = measuredError(provenance)?.penumbra.rmse;
+          if (error === undefined || !(error > 0) || !target) return [];
           const own = condition === block.target;
           const { low, high } = target.wilson;
-          return [{ pair: id, condition, target: own, error, share: own ? target.proportion : 1 - target.proportion, interval: own ? { low, high } : { low: 1 - high, high: 1 - low } }];
+          return [{ item: id, condition, target: own, error, share: own ? target.proportion : 1 - target.proportion, interval: own ? { low, high } : { low: 1 - high, high: 1 - low } }];
         }),
     ),
   );
@@ -53,7 +54,7 @@ export function errorPlot(all: readonly Point[], width: number): SVGSVGElement {
   const [low, high] = [Math.floor(Math.min(...logs) - 0.1), Math.ceil(Math.max(...logs) + 0.1)];
   const x = (error: number) => box.left + ((Math.log10(error) - low) / (high - low)) * (box.right - box.left);
   const y = (share: number) => box.bottom - share * (box.bottom - box.top);
-  const description = all.map((p) => `${p.pair}, ${p.condition}: error ${significant(p.error)}, preferred by ${fixed(100 * p.share, 0)}%`).join("; ");
+  const description = all.map((p) => `${p.item}, ${p.condition}: error ${significant(p.error)}, preferred by ${fixed(100 * p.share, 0)}%`).join("; ");
   const svg = figure(width, height, "Error of each stimulus against the share of participants who preferred it", `${description}.`);
 
   const others = [...new Set(all.filter((p) => !p.target).map((p) => p.condition))];
@@ -80,8 +81,8 @@ export function errorPlot(all: readonly Point[], width: number): SVGSVGElement {
     s("text", { class: "label", x: (box.left + box.right) / 2, y: height - 8, "text-anchor": "middle" }, "RMSE in penumbra, share of full scale (log axis)"),
     s("text", { class: "label", x: 0, y: box.top - 18 }, "share that preferred it"),
   );
-  for (const pair of new Set(all.map((p) => p.pair))) {
-    const [a, b] = all.filter((p) => p.pair === pair);
+  for (const item of new Set(all.map((p) => p.item))) {
+    const [a, b] = all.filter((p) => p.item === item);
     if (a !== undefined && b !== undefined) svg.append(s("line", { class: "join", x1: x(a.error), y1: y(a.share), x2: x(b.error), y2: y(b.share) }));
   }
   for (const p of all) {
@@ -94,13 +95,13 @@ export function errorPlot(all: readonly Point[], width: number): SVGSVGElement {
   const taken: Array<{ left: number; right: number; y: number }> = [];
   for (const p of named) {
     const cx = x(p.error);
-    const length = 7.2 * p.pair.length;
+    const length = 7.2 * p.item.length;
     const left = cx - box.left > length + 14 && cx > (box.left + box.right) / 2;
     const span = left ? { left: cx - 12 - length, right: cx - 12 } : { left: cx + 12, right: cx + 12 + length };
     let level = y(p.share) + 4;
     while (taken.some((t) => t.left < span.right && span.left < t.right && Math.abs(t.y - level) < 15)) level += 5;
     taken.push({ ...span, y: level });
-    svg.append(s("text", { class: "name", x: left ? cx - 12 : cx + 12, y: level, "text-anchor": left ? "end" : "start" }, p.pair));
+    svg.append(s("text", { class: "name", x: left ? cx - 12 : cx + 12, y: level, "text-anchor": left ? "end" : "start" }, p.item));
   }
   return svg;
 }

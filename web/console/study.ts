@@ -1,19 +1,41 @@
 /** One study: who took part, what they chose, what they were shown. */
 import { h } from "../shared/dom.ts";
-import { clockTime, count, fixed, pValue } from "../shared/format.ts";
+import { clockTime, count } from "../shared/format.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
-import { type Block, csvAddress, fetchPaper, fetchReport, fetchResults, fetchStudies, type Participants, reportAddress, type Results, type StudyRow } from "./api.ts";
-import { copyButton, number, tableText } from "./copy.ts";
+import { addressOf, fetchPaper, fetchReport, fetchResults, fetchStudies, fetchVersions, type Participants, type Results, type Selection, type StudySummary, type StudyVersion } from "./api.ts";
+import { choices } from "./choices.ts";
+import { copyButton, number } from "./copy.ts";
 import { gallery } from "./gallery.ts";
 import { drawPaper, PAPER_STUDY } from "./paper.ts";
-import { choiceDistribution } from "./plots.ts";
 import { drawReport } from "./report.ts";
+import { statusText } from "./status.ts";
+import { pooledBanner, selectionOf, short, VersionList } from "./versions.ts";
 
 /** Between two looks at the server, ms. */
 const POLL_MS = 5000;
 
+export interface Asked {
+  id: string;
+  /** Which versions: see `selectionOf`. */
+  search: URLSearchParams;
+  /** Goes to another page of the console. */
+  go(address: string): void;
+  signal: AbortSignal;
+}
+
+/** What there is to see; no results where no version was ever ready. */
+interface Seen {
+  summary: StudySummary | undefined;
+  versions: StudyVersion[];
+  selection: Selection;
+  results: Results | null;
+}
+
+/** A version that the address names and the study hasn't got. */
+export class UnknownVersion extends Error {}
+
 /** Shows a study in `root` and keeps it current until `signal` aborts. Rejects when the first look fails. */
-export async function showStudy(root: HTMLElement, id: string, signal: AbortSignal): Promise<void> {
+export async function showStudy(root: HTMLElement, { id, search, go, signal }: Asked): Promise<void> {
   const sections = new Map<string, { shown: string; element: HTMLElement }>();
   const updated = h("p", { class: "updated", role: "status" });
   const body = h("div", { class: "study" });
@@ -31,36 +53,42 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
   // The full report resamples participants, which takes the server a while: it is asked for only when answers have come.
   const report = h("section", { class: "report" }, h("h2", {}, "Beyond the t-test"), h("p", { class: "quiet" }, "Resampling participants; this takes a moment."));
   let judged = "";
-  const judge = (results: Results) => {
-    const answers = JSON.stringify([results.blocks, results.stimuli]);
+  let list: VersionList | null = null;
+  const judge = (selection: Selection, results: Results) => {
+    const answers = JSON.stringify([results.blocks, results.stimuli, results.pooled]);
     if (answers === judged) return;
     judged = answers;
     if (!report.isConnected) body.append(report);
-    fetchReport(id).then(
+    fetchReport(selection).then(
       (found) => !signal.aborted && report.replaceChildren(...drawReport(found, Math.min(760, Math.max(280, body.clientWidth)))),
-      (error: unknown) => {
-        if (signal.aborted) return;
-        judged = "";
-        // A server without this route still has the paper's test.
-        if (error instanceof Refused && error.status === 404) report.remove();
-      },
+      () => (judged = ""), // asked for again at the next look
     );
   };
 
-  const look = () => Promise.all([fetchResults(id), fetchStudies()]);
-  const draw = ([results, studies]: [Results, StudyRow[]]) => {
-    document.title = `${results.title} · kelir`;
-    section("head", [results.title, results.config_hash, results.other_versions], () => head(results));
-    section("status", studies.find((row) => row.id === id)?.detail ?? null, () => status(studies.find((row) => row.id === id)));
-    section("participants", results.participants, () => participants(results.participants, id));
-    section("choices", [results.blocks, results.scale], () => choices(results.blocks, results.scale ?? null));
-    judge(results);
-    section("stimuli", results.stimuli, () => [h("h2", {}, "Stimuli"), ...(results.stimuli.length > 0 ? gallery(results.stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
-    section("data", id, () => data(id));
+  const draw = ({ summary, versions, selection, results }: Seen) => {
+    const title = results?.title ?? summary?.title ?? id;
+    document.title = `${title} · kelir`;
+    const status = summary === undefined ? null : statusText(summary);
+    section("head", [title, results?.version, results?.other_versions], () => head(id, title, results));
+    section("status", [status, results?.pooled, results?.different_stimuli], () => [...(status === null ? [] : [h("p", { class: "banner", role: "status" }, status)]), ...(results === null ? [] : pooledBanner(results, versions))]);
+    section("versions", versions.map(({ version, is_current }) => [version, is_current]), () => {
+      list = new VersionList(selection, versions, go);
+      return versions.length < 2 ? [] : [h("h2", {}, "Versions"), list.element];
+    });
+    list?.recount(versions);
+    section("participants", results?.participants ?? null, () => participants(results?.participants, id));
+    if (results !== null) {
+      const { blocks, scale, stimuli, different_stimuli } = results;
+      section("choices", [blocks, scale], () => choices(results));
+      judge(selection, results);
+      section("stimuli", [stimuli, different_stimuli], () => [h("h2", {}, "Stimuli"), ...(stimuli.length > 0 ? gallery(stimuli, different_stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
+      section("data", [results.version, selection.pooled], () => data({ ...selection, version: results.version }));
+    }
     updated.textContent = `Updated ${clockTime(new Date())}`;
     updated.classList.remove("stale");
   };
 
+  const look = () => see(id, search);
   draw(await look());
   if (signal.aborted) return;
   root.replaceChildren(updated, body);
@@ -71,7 +99,7 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
         paper.replaceChildren(...drawPaper(found));
         body.lastElementChild?.before(paper);
       },
-      () => undefined, // a server without this route
+      () => undefined, // the study's own numbers are what one came for
     );
   }
 
@@ -93,29 +121,27 @@ export async function showStudy(root: HTMLElement, id: string, signal: AbortSign
   signal.addEventListener("abort", () => clearInterval(timer));
 }
 
-function head({ title, study, config_hash, other_versions }: Results): Node[] {
-  const others = (other_versions ?? []).reduce((sum, version) => sum + version.sessions, 0);
+/** Looks at the server: the study's versions, and the results of those that the address names. */
+async function see(id: string, search: URLSearchParams): Promise<Seen> {
+  const [studies, versions] = await Promise.all([fetchStudies(), fetchVersions(id)]);
+  const selection = selectionOf(id, search, versions);
+  if ("unknown" in selection) throw new UnknownVersion(selection.unknown);
+  try {
+    return { summary: studies.find((row) => row.id === id), versions, selection, results: await fetchResults(selection) };
+  } catch (error) {
+    if (versions.length > 0 || !(error instanceof Refused) || isTemporary(error)) throw error;
+    return { summary: studies.find((row) => row.id === id), versions, selection, results: null };
+  }
+}
+
+function head(id: string, title: string, results: Results | null): Node[] {
+  const others = (results?.other_versions ?? []).reduce((sum, version) => sum + version.sessions, 0);
   return [
     h("h1", { tabindex: -1 }, title),
-    h("p", { class: "quiet" }, `${study} · version `, number(config_hash.slice(0, 12), config_hash)),
+    h("p", { class: "quiet" }, id, ...(results === null ? [] : [" · version ", number(short(results.version), results.version)])),
     ...(others > 0 ? [h("p", { class: "quiet" }, `${count(others, "session")} of other versions of this study ${others === 1 ? "is" : "are"} stored too and left out here.`)] : []),
-    invitation(study),
+    invitation(id),
   ];
-}
-
-/** Says what keeps participants out, if anything does. */
-function status(row: StudyRow | undefined): Node[] {
-  const text = statusText(row);
-  return text === null ? [] : [h("p", { class: "banner", role: "status" }, text)];
-}
-
-/** A study's readiness in words; null when participants can come. */
-export function statusText(row: StudyRow | undefined): string | null {
-  if (row?.status === "failed") return `The stimuli could not be made, so nobody can take part: ${typeof row.detail === "string" ? row.detail : "the server's log says why"}.`;
-  if (row?.status !== "preparing") return null;
-  const detail = row.detail;
-  const far = detail !== null && typeof detail === "object" ? `: ${detail.done} of ${detail.total} ready` : "";
-  return `The stimuli are being made${far}. Participants who come now are asked to wait.`;
 }
 
 /** The participants' link: the one thing that moves a study on. */
@@ -124,7 +150,8 @@ function invitation(study: string): HTMLElement {
   return h("p", { class: "invitation" }, h("a", { href: address, target: "_blank", rel: "noopener" }, address), copyButton("Copy the participants' link", () => address, { class: "primary" }));
 }
 
-function participants({ started, in_progress, completed }: Participants, id: string): Node[] {
+function participants(people: Participants | undefined, id: string): Node[] {
+  const { started, in_progress, completed } = people ?? { started: 0, in_progress: 0, completed: 0 };
   const figure = (n: number, label: string, testid: string) => h("div", { class: "figure" }, h("strong", { "data-testid": testid }, number(n.toLocaleString("en"), n)), h("span", {}, label));
   const left = Math.max(0, started - in_progress - completed);
   const heading = h("h2", {}, "Participants");
@@ -138,64 +165,15 @@ function participants({ started, in_progress, completed }: Participants, id: str
   ];
 }
 
-/** The conditions' positions in words, best first: they are there at once, where the report takes its time. */
-function positions(scale: NonNullable<Results["scale"]>): HTMLElement {
-  const best = scale.conditions.map((name, i) => ({ name, jod: scale.jod[i] ?? 0 })).sort((a, b) => b.jod - a.jod);
-  const shown = best.flatMap(({ name, jod }, i) => [i > 0 ? ", " : "", `${name} `, number(fixed(jod, 2), jod)]);
-  return h("p", { "data-testid": "scale" }, "All conditions on one scale, in JOD: ", ...shown, ".");
-}
-
-function choices(blocks: readonly Block[], scale: NonNullable<Results["scale"]> | null): Node[] {
-  const table = resultsTable(blocks);
-  return [
-    h("h2", {}, "Choices"),
-    h("div", { class: "plots" }, ...blocks.map(blockFigure)),
-    h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of choices" }, table),
-    h("p", { class: "quiet" }, "Number of choices of the target per participant, over those who answered every pair of the block. Two-tailed one-sample t-test against chance, half the pairs. ", copyButton("Copy the table", () => tableText(table), { class: "link" })),
-    ...(scale === null ? [] : [positions(scale)]),
-  ];
-}
-
-function blockFigure(block: Block): HTMLElement {
-  const [first, second] = block.conditions;
-  const what = `${first} against ${second}, ${count(block.items, "pair")} of ${block.kind === "still" ? "stills" : "animations"}`;
-  const plot =
-    block.n > 0
-      ? choiceDistribution(block)
-      : h("p", { class: "empty" }, (block.incomplete ?? 0) > 0 ? "Nobody has answered every pair of this block yet." : "No answers yet. The plot appears with the first participant who answers this block.");
-  return h("figure", { class: "block" }, h("figcaption", {}, h("strong", {}, block.title), h("span", { class: "quiet" }, what)), plot);
-}
-
-function resultsTable(blocks: readonly Block[]): HTMLTableElement {
-  const heads = ["Block", "Target", "n", "Mean", "SD", "Chance", "t", "df", "p"];
-  const row = (block: Block) => {
-    const cell = (text: string, exact: number | null) => h("td", {}, number(text, exact));
-    const hooks = { "data-testid": `block-${block.id}`, "data-n": block.n, "data-mean": block.mean, "data-sd": block.sd, "data-t": block.t, "data-df": block.df, "data-p": block.p };
-    return h(
-      "tr",
-      hooks,
-      h("th", { scope: "row" }, block.title, ...(block.note ? [h("span", { class: "note" }, block.note)] : [])),
-      h("td", { class: "word" }, block.target),
-      cell(String(block.n), block.n),
-      cell(fixed(block.mean, 3), block.mean),
-      cell(fixed(block.sd, 3), block.sd),
-      cell(fixed(block.mu, 1), block.mu),
-      cell(fixed(block.t, 3), block.t),
-      cell(block.df === null ? "–" : String(block.df), block.df),
-      cell(pValue(block.p), block.p),
-    );
-  };
-  const head = h("thead", {}, h("tr", {}, ...heads.map((name, i) => h("th", { scope: "col", class: i < 2 ? "word" : null }, name))));
-  return h("table", {}, head, h("tbody", {}, ...blocks.map(row)));
-}
-
-function data(id: string): Node[] {
-  const link = (file: "responses" | "codebook" | "pairs", text: string) => h("a", { href: csvAddress(id, file), download: `${id}-${file}.csv` }, text);
-  const report = (ending: "html" | "md", text: string) => h("a", { href: reportAddress(id, ending), download: `${id}-report.${ending}` }, text);
+/** Files of exactly what the page shows, whatever is served later. */
+function data(selection: Selection): Node[] {
+  const { study, version, pooled } = selection;
+  const name = `${study}-${short(version)}${pooled.length > 0 ? "-pooled" : ""}`;
+  const file = (ending: Parameters<typeof addressOf>[1], text: string) => h("a", { href: addressOf(selection, ending), download: `${name}-${ending}` }, text);
   return [
     h("h2", {}, "Report and data"),
-    h("p", {}, report("html", "Download report (HTML)"), ": everything on this page and the methods, in one file that prints well. ", report("md", "Download report (Markdown)"), ": the same for a repository or a paper."),
-    h("p", {}, link("responses", "Responses (CSV)"), ": one row a trial, as it was stored. ", link("codebook", "Codebook (CSV)"), ": what each column means. ", link("pairs", "Pairs (CSV)"), ": the choices as pwcmp reads them."),
-    h("p", { class: "quiet" }, "The same from the command line: ", h("code", {}, `kelir stats ${id} --format csv`), ", ", h("code", {}, `kelir report ${id} -o report.html`)),
+    h("p", {}, file("report.html", "Download report (HTML)"), ": everything on this page and the methods, in one file that prints well. ", file("report.md", "Download report (Markdown)"), ": the same for a repository or a paper."),
+    h("p", {}, file("responses.csv", "Responses (CSV)"), ": one row a trial, as it was stored. ", file("codebook.csv", "Codebook (CSV)"), ": what each column means. ", file("pairs.csv", "Pairs (CSV)"), ": the choices as pwcmp reads them."),
+    h("p", { class: "quiet" }, "The same of the current version from the command line: ", h("code", {}, `kelir stats ${study} --format csv`), ", ", h("code", {}, `kelir report ${study} -o report.html`)),
   ];
 }

@@ -1,19 +1,32 @@
 /** What we know of the participant's display. */
 import { refreshPeriod } from "./clock.ts";
+import { visible } from "./trials/shared/hidden.ts";
 
-/** Measures the refresh period over some sixty animation frames, while little else happens; null when the page is hidden all along. */
-export function measureRefresh(): Promise<number | null> {
+/**
+ * Measures the refresh period over some sixty animation frames, while little else happens; begins again where the page was hidden
+ * meanwhile, and gives null where a visible page gets too few frames.
+ */
+export async function measureRefresh(): Promise<number | null> {
+  for (;;) {
+    await visible();
+    const times = await frameTimes();
+    const period = refreshPeriod(times);
+    if (period !== null || !document.hidden) return period;
+  }
+}
+
+/** When the next animation frames are, ms; fewer than asked for where they don't come. */
+function frameTimes(): Promise<number[]> {
   return new Promise((resolve) => {
     const times: number[] = [];
-    const deadline = setTimeout(() => finish(), 3000);
-    const finish = () => {
-      clearTimeout(deadline);
-      resolve(refreshPeriod(times));
-    };
+    const deadline = setTimeout(() => resolve(times), 3000);
     const step = (now: number) => {
       times.push(now);
-      if (times.length > 60) finish();
-      else requestAnimationFrame(step);
+      if (times.length <= 60) requestAnimationFrame(step);
+      else {
+        clearTimeout(deadline);
+        resolve(times);
+      }
     };
     requestAnimationFrame(step);
   });

@@ -1,22 +1,27 @@
-/** Where two equal pictures go, in whole device pixels, so that the browser never resamples what it need not. */
+/** Where one picture or two equal ones go, in whole device pixels, so that the browser never resamples what it need not. */
 
 export interface Space {
   /** Stimulus pixels. */
   width: number;
   height: number;
-  /** CSS pixels that the pair may fill, outlines' room already taken off. */
+  /** CSS pixels that the pictures may fill, outlines' room already taken off. */
   roomWidth: number;
   roomHeight: number;
   devicePixelRatio: number;
 }
 
-export interface Layout {
-  arrangement: "side" | "stack";
-  /** Device pixels per stimulus pixel: 1, or less where two don't fit. */
+/** The size of a picture as shown. */
+export interface Size {
+  /** Device pixels per stimulus pixel: 1, or less where there is no room. */
   scale: number;
   /** CSS pixels. */
   width: number;
   height: number;
+}
+
+export interface Layout extends Size {
+  arrangement: "side" | "stack";
+  /** CSS pixels. */
   gap: number;
 }
 
@@ -32,16 +37,30 @@ export function fitPair(space: Space): Layout {
   return stack.scale > side.scale ? stack : side;
 }
 
-function arrange({ width, height, roomWidth, roomHeight, devicePixelRatio: dpr }: Space, arrangement: "side" | "stack"): Layout {
-  const side = arrangement === "side";
-  const [roomW, roomH] = [Math.floor(roomWidth * dpr), Math.floor(roomHeight * dpr)];
-  const sized = (w: number) => ({ w, h: Math.round((height * w) / width), gap: Math.ceil(Math.max(GAP_MIN_CSS * dpr, GAP_SHARE * w)) });
-  const fits = ({ w, h, gap }: ReturnType<typeof sized>) =>
-    side ? 2 * w + gap <= roomW && h <= roomH : w <= roomW && 2 * h + gap <= roomH;
-  // A picture never vanishes, however small the window.
+/** One picture, at native size where there is room, else as large as fits. */
+export function fitOne(space: Space): Size {
+  const [roomW, roomH] = room(space);
+  const { w, h } = shrink(space, ({ w, h }) => w <= roomW && h <= roomH);
+  return { scale: w / space.width, width: w / space.devicePixelRatio, height: h / space.devicePixelRatio };
+}
+
+function arrange(space: Space, arrangement: "side" | "stack"): Layout {
+  const dpr = space.devicePixelRatio;
+  const [roomW, roomH] = room(space);
+  const gap = (w: number) => Math.ceil(Math.max(GAP_MIN_CSS * dpr, GAP_SHARE * w));
+  const { w, h } = shrink(space, ({ w, h }) => (arrangement === "side" ? 2 * w + gap(w) <= roomW && h <= roomH : w <= roomW && 2 * h + gap(w) <= roomH));
+  return { arrangement, scale: w / space.width, width: w / dpr, height: h / dpr, gap: gap(w) / dpr };
+}
+
+/** The room in whole device pixels. */
+const room = ({ roomWidth, roomHeight, devicePixelRatio: dpr }: Space): [number, number] => [Math.floor(roomWidth * dpr), Math.floor(roomHeight * dpr)];
+
+/** The largest size in whole device pixels that fits; a picture never vanishes, however small the window. */
+function shrink({ width, height }: Space, fits: (size: { w: number; h: number }) => boolean): { w: number; h: number } {
+  const sized = (w: number) => ({ w, h: Math.round((height * w) / width) });
   let size = sized(width);
   while (!fits(size) && size.w > 16) size = sized(size.w - 1);
-  return { arrangement, scale: size.w / width, width: size.w / dpr, height: size.h / dpr, gap: size.gap / dpr };
+  return size;
 }
 
 /** sRGB code (0 to 255) of a linear luminance, IEC 61966-2-1. */

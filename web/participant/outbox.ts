@@ -4,23 +4,33 @@
  */
 import { backoffMs } from "../shared/backoff.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
-import type { Answer } from "./api.ts";
+import type { Acknowledgement, Answer } from "./api.ts";
 import type { Store } from "./storage.ts";
 
 export interface Waiting {
   index: number;
-  answer: Answer;
+  /** The JSON that is sent, to the byte: the server tells a resend from another answer by it. */
+  body: string;
   /** Set when the server refused it for good: it is kept, and not sent again by itself. */
   refused?: string;
+}
+
+/** What is found in storage: entries of pages loaded before an update hold the answer, whose JSON was made when it was sent. */
+type Kept = Waiting | { index: number; answer: Answer; refused?: string };
+
+function upgraded(kept: Kept): Waiting {
+  if ("body" in kept) return kept;
+  const { answer, ...rest } = kept;
+  return { ...rest, body: JSON.stringify(answer) };
 }
 
 /** What the outside may want to say about the line. */
 export type Line = "idle" | "sending" | "waiting" | "refused";
 
 export interface Hooks {
-  send(index: number, answer: Answer): Promise<unknown>;
-  /** The server has this trial: our answer, or an earlier one that stands. */
-  onStored(index: number, outcome: "acknowledged" | "already_answered"): void;
+  send(index: number, body: string): Promise<Acknowledgement>;
+  /** The server has this trial: our answer, which it acknowledged, or (`null`) an earlier one that stands. */
+  onStored(index: number, acknowledged: Acknowledgement | null): void;
   onLine(line: Line): void;
   setTimer(run: () => void, ms: number): unknown;
   clearTimer(timer: unknown): void;
@@ -45,7 +55,7 @@ export class Outbox {
 
   /** Everything not acknowledged yet, in trial order. */
   get waiting(): Waiting[] {
-    return this.#store.read<Waiting[]>(this.#key) ?? [];
+    return (this.#store.read<Kept[]>(this.#key) ?? []).map(upgraded);
   }
 
   get indices(): Set<number> {
@@ -59,7 +69,7 @@ export class Outbox {
   /** Keeps an answer and starts sending. The first answer to a trial stands. */
   put(index: number, answer: Answer): void {
     if (!this.indices.has(index)) {
-      this.#write([...this.waiting, { index, answer }].sort((a, b) => a.index - b.index));
+      this.#write([...this.waiting, { index, body: JSON.stringify(answer) }].sort((a, b) => a.index - b.index));
     }
     void this.flush();
   }
@@ -92,7 +102,7 @@ export class Outbox {
 
   /** Gives refused answers another chance. */
   retryRefused(): Promise<void> {
-    this.#write(this.waiting.map(({ index, answer }) => ({ index, answer })));
+    this.#write(this.waiting.map(({ index, body }) => ({ index, body })));
     return this.flush();
   }
 
@@ -103,12 +113,13 @@ export class Outbox {
   }
 
   /** True when the entry left the queue or was set aside, false when it has to wait. */
-  async #deliver({ index, answer }: Waiting): Promise<boolean> {
+  async #deliver({ index, body }: Waiting): Promise<boolean> {
+    let acknowledged: Acknowledgement;
     try {
-      await this.#hooks.send(index, answer);
+      acknowledged = await this.#hooks.send(index, body);
     } catch (error) {
       if (error instanceof Refused && error.status === 409 && error.code === "already_answered") {
-        this.#remove(index, "already_answered");
+        this.#remove(index, null);
         return true;
       }
       if (isTemporary(error)) {
@@ -124,7 +135,7 @@ export class Outbox {
       return true;
     }
     this.#failures = 0;
-    this.#remove(index, "acknowledged");
+    this.#remove(index, acknowledged);
     return true;
   }
 
@@ -132,9 +143,9 @@ export class Outbox {
     return this.waiting.find((entry) => entry.refused === undefined);
   }
 
-  #remove(index: number, outcome: "acknowledged" | "already_answered"): void {
+  #remove(index: number, acknowledged: Acknowledgement | null): void {
     this.#write(this.waiting.filter((entry) => entry.index !== index));
-    this.#hooks.onStored(index, outcome);
+    this.#hooks.onStored(index, acknowledged);
   }
 
   #write(entries: Waiting[]): void {

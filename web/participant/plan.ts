@@ -1,5 +1,5 @@
 /** Which trial comes next: the server's plan, less what it has and what still waits here to be sent. */
-import type { Trial } from "./api.ts";
+import type { State, Trial } from "./api.ts";
 
 /** The trials that are neither stored on the server nor waiting in this browser, in order. */
 export function remaining(trials: readonly Trial[], waiting: ReadonlySet<number>): Trial[] {
@@ -8,13 +8,15 @@ export function remaining(trials: readonly Trial[], waiting: ReadonlySet<number>
     .sort((a, b) => a.trial_index - b.trial_index);
 }
 
-/** "7 of 25": where a trial stands in the whole plan, counted from one. */
-export function position(trials: readonly Trial[], trial: Trial): { number: number; of: number } {
-  const before = trials.filter((other) => other.trial_index < trial.trial_index).length;
-  return { number: before + 1, of: trials.length };
+/** "7 of 25": where a trial stands in the whole plan, counted from one; "7 of at most 43" while others are still to be decided. */
+export function position({ trials, more, most_trials }: Pick<State, "trials" | "more" | "most_trials">, trial: Trial): string {
+  const number = trials.filter((other) => other.trial_index < trial.trial_index).length + 1;
+  return more ? `${number} of at most ${most_trials}` : `${number} of ${trials.length}`;
 }
 
-/** The plan with one more answer stored. */
-export function withAnswered(trials: readonly Trial[], index: number): Trial[] {
-  return trials.map((trial) => (trial.trial_index === index ? { ...trial, answered: true } : trial));
+/** The plan with one more answer stored, and the trials that were decided by it. */
+export function withAnswered(trials: readonly Trial[], index: number, decided: readonly Trial[] = []): Trial[] {
+  const known = new Set(trials.map((trial) => trial.trial_index));
+  const all = [...trials, ...decided.filter((trial) => !known.has(trial.trial_index))];
+  return all.map((trial) => (trial.trial_index === index ? { ...trial, answered: true } : trial));
 }

@@ -17,10 +17,8 @@ export type Picture =
   | { kind: "still"; image: HTMLImageElement }
   | { kind: "animation"; manifest: Manifest; frames: ImageBitmap[] };
 
-export interface Pair {
-  left: Picture;
-  right: Picture;
-}
+/** A trial's pictures by role. */
+export type Pictures = Record<string, Picture>;
 
 /** A stimulus that can't be had: the server hasn't got it, or its bytes are not what the plan says. */
 export class Unusable extends Error {}
@@ -28,8 +26,8 @@ export class Unusable extends Error {}
 export interface Loader {
   /** Gets a trial's stimuli while something else is on the screen; decodes them too, unless that could disturb an animation. */
   preload(trial: Trial, decode: boolean): void;
-  /** Both stimuli, ready to be painted. Rejects with `Unusable` when trying again would not help. */
-  load(trial: Trial): Promise<Pair>;
+  /** All its stimuli, ready to be painted. Rejects with `Unusable` when trying again would not help. */
+  load(trial: Trial): Promise<Pictures>;
   /** Frees what `load` made for a trial that is over. */
   release(trial: Trial): void;
 }
@@ -37,7 +35,7 @@ export interface Loader {
 /** `onWaiting` hears `true` when the line keeps us waiting, and `false` when it is back. */
 export function openLoader(onWaiting: (waiting: boolean) => void): Loader {
   const cache = new Map<string, Promise<Blob>>();
-  const pairs = new Map<number, Promise<Pair>>();
+  const ready = new Map<number, Promise<Pictures>>();
   const slots = limit(6);
 
   const bytes = (ref: StimulusRef): Promise<Blob> => {
@@ -72,36 +70,36 @@ export function openLoader(onWaiting: (waiting: boolean) => void): Loader {
     return { kind: "animation", manifest: description, frames };
   };
 
-  const make = async (trial: Trial): Promise<Pair> => {
+  const make = async (trial: Trial): Promise<Pictures> => {
     const picture = trial.kind === "still" ? still : animation;
-    const [left, right] = await Promise.all([picture(trial.left), picture(trial.right)]);
-    return { left, right };
+    const all = Object.entries(trial.shown).map(async ([role, ref]) => [role, await picture(ref)] as const);
+    return Object.fromEntries(await Promise.all(all));
   };
 
-  const load = (trial: Trial): Promise<Pair> => {
-    let pair = pairs.get(trial.trial_index);
-    if (pair === undefined) {
-      pair = make(trial);
-      pairs.set(trial.trial_index, pair);
-      pair.catch(() => pairs.delete(trial.trial_index)); // `load` meets the same error again where it can be said
+  const load = (trial: Trial): Promise<Pictures> => {
+    let pictures = ready.get(trial.trial_index);
+    if (pictures === undefined) {
+      pictures = make(trial);
+      ready.set(trial.trial_index, pictures);
+      pictures.catch(() => ready.delete(trial.trial_index)); // `load` meets the same error again where it can be said
     }
-    return pair;
+    return pictures;
   };
 
   return {
     preload(trial, decode) {
       if (decode) return void load(trial);
-      for (const ref of [trial.left, trial.right]) {
+      for (const ref of Object.values(trial.shown)) {
         const fetched = trial.kind === "still" ? bytes(ref) : manifest(ref).then((m) => Promise.all(m.frames.map(frame)));
         fetched.catch(() => undefined);
       }
     },
     load,
     release(trial) {
-      const made = pairs.get(trial.trial_index);
-      pairs.delete(trial.trial_index);
-      void made?.then((pair) => {
-        for (const picture of [pair.left, pair.right]) {
+      const made = ready.get(trial.trial_index);
+      ready.delete(trial.trial_index);
+      void made?.then((pictures) => {
+        for (const picture of Object.values(pictures)) {
           if (picture.kind === "still") URL.revokeObjectURL(picture.image.src);
           else for (const bitmap of picture.frames) bitmap.close();
         }

@@ -47,6 +47,12 @@ export function clockTime(date: Date): string {
   return date.toLocaleTimeString("en-GB");
 }
 
+/** The days of two ISO 8601 times, "2026-05-04 to 2026-06-03", or the one day. */
+export function dateSpan(from: string, to: string): string {
+  const [first, last] = [from.slice(0, 10), to.slice(0, 10)];
+  return first === last ? first : `${first} to ${last}`;
+}
+
 function plain(x: number, digits: number): string {
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(x))));
   return x.toFixed(Math.min(20, decimals));

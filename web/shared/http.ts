@@ -1,9 +1,12 @@
 /** One way to talk to the server: JSON in, JSON out, and errors that say whether trying again can help. */
+import type { components } from "../api/schema.ts";
+
+type Problem = components["schemas"]["Problem"];
 
 /** The server answered, and the answer is no. */
 export class Refused extends Error {
   readonly status: number;
-  /** `snake_case` code of the server's error body, or `http_<status>`. */
+  /** `snake_case` code of the server's problem document, or `http_<status>`. */
   readonly code: string;
   /** Milliseconds the server asked us to wait, if it did. */
   readonly retryAfterMs: number | null;
@@ -22,9 +25,12 @@ export function isTemporary(error: unknown): boolean {
 }
 
 export interface Options {
-  method?: "GET" | "POST" | "PUT";
+  method?: "GET" | "POST" | "PUT" | "DELETE";
   token?: string | undefined;
+  /** Sent as JSON. */
   body?: unknown;
+  /** JSON that is written already: sent to the byte. */
+  text?: string;
   /** Lets the request outlive the page. */
   keepalive?: boolean;
   timeoutMs?: number;
@@ -34,19 +40,20 @@ export interface Options {
 export async function request<T>(path: string, options: Options = {}): Promise<T> {
   const abort = new AbortController();
   const timer = setTimeout(() => abort.abort(new Error("no answer in time")), options.timeoutMs ?? 15_000);
+  const body = options.body === undefined ? options.text : JSON.stringify(options.body);
   try {
     const response = await fetch(path, {
       method: options.method ?? "GET",
       headers: {
-        accept: "application/json",
+        accept: "application/json, application/problem+json",
         ...(options.token === undefined ? {} : { authorization: `Bearer ${options.token}` }),
-        ...(options.body === undefined ? {} : { "content-type": "application/json" }),
+        ...(body === undefined ? {} : { "content-type": "application/json" }),
       },
       cache: "no-store",
       credentials: "same-origin",
       keepalive: options.keepalive ?? false,
       signal: abort.signal,
-      ...(options.body === undefined ? {} : { body: JSON.stringify(options.body) }),
+      ...(body === undefined ? {} : { body }),
     });
     const text = await response.text();
     if (response.ok) return (text === "" ? undefined : JSON.parse(text)) as T;
@@ -56,15 +63,27 @@ export async function request<T>(path: string, options: Options = {}): Promise<T
   }
 }
 
-/** Reads the server's error body; anything else (a proxy's page) keeps its status only. */
+/** Reads the server's problem document; anything else (a proxy's page) keeps its status only. */
 export function refusal(status: number, text: string, retryAfter: string | null): Refused {
   const seconds = retryAfter === null ? NaN : Number(retryAfter);
   const wait = Number.isFinite(seconds) && seconds >= 0 ? Math.min(seconds, 120) * 1000 : null;
+  const problem = parsed(text);
+  if (problem === null) return new Refused(status, `http_${status}`, `The server answered with status ${status}.`, wait);
+  return new Refused(status, problem.code, explain(problem), wait);
+}
+
+/** A problem document of ours has a code; a proxy's has none that we know. */
+function parsed(text: string): (Partial<Problem> & { code: string }) | null {
   try {
-    const { error } = JSON.parse(text) as { error?: { code?: unknown; message?: unknown } };
-    if (typeof error?.code === "string") return new Refused(status, error.code, String(error.message ?? error.code), wait);
+    const found: unknown = JSON.parse(text);
+    return typeof found === "object" && found !== null && "code" in found && typeof found.code === "string" ? { ...found, code: found.code } : null;
   } catch {
-    // not JSON
+    return null;
   }
-  return new Refused(status, `http_${status}`, `The server answered with status ${status}.`, wait);
+}
+
+/** What went wrong, then each field: "/rt = -1: must be …". */
+function explain({ code, title, detail, errors }: Partial<Problem> & { code: string }): string {
+  const fields = (Array.isArray(errors) ? errors : []).map(({ pointer, rule, ...rest }) => `${pointer}${"value" in rest ? ` = ${JSON.stringify(rest.value)}` : ""}: ${rule}.`);
+  return [detail ?? title ?? code, ...fields].join(" ");
 }

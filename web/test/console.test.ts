@@ -1,15 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { BlockReport, Stimulus, StudyRow } from "../console/api.ts";
-import { flatten } from "../console/gallery.ts";
+import { addressOf, type BlockReport, type Stimulus, type StudySummary, type StudyVersion } from "../console/api.ts";
+import { flatten, measuredError, standardError } from "../console/provenance.ts";
 import { points } from "../console/scatter.ts";
 import { niceTicks } from "../console/strips.ts";
-import { statusText } from "../console/study.ts";
+import { statusText } from "../console/status.ts";
+import { pageOf, selectionOf } from "../console/versions.ts";
 
-const stimulus = (pair: string, condition: string, rmse: number | null): Stimulus => {
+const stimulus = (item: string, condition: string, rmse: number | null): Stimulus => {
   const errors = { count: 1, bias: 0, rmse: rmse ?? 0, p999: 0, max: 0 };
   const error = rmse === null ? null : { reference: { technique: "mc" }, frames: [0], all: { ...errors, rmse: 1 }, penumbra: errors, floor: null };
-  return { pair, condition, sha256: "0", provenance: { error } };
+  return { item, condition, sha256: "0", provenance: { error } };
 };
 const block = (pair: string, chosen: number): BlockReport =>
   ({
@@ -40,10 +41,60 @@ test("provenance is read to its leaves, and what is null is left out", () => {
   assert.deepEqual(flatten({ list: [{ a: 1 }] }), [["list.0.a", 1]]);
 });
 
+test("provenance is believed only where it is what it should be", () => {
+  const penumbra = { rmse: 1e-3, max: 2e-2 };
+  assert.deepEqual(measuredError({ error: { reference: { technique: "mc" }, penumbra, floor: 7e-5 } }), { reference: { technique: "mc" }, penumbra, floor: 7e-5 });
+  assert.equal(measuredError({ error: { penumbra } })?.floor, null);
+  for (const nothing of [null, undefined, 7, "x", [], {}, { error: null }, { error: { penumbra: { rmse: "1", max: 2 } } }, { error: [penumbra] }]) {
+    assert.equal(measuredError(nothing), null, JSON.stringify(nothing));
+    assert.equal(standardError(nothing), null, JSON.stringify(nothing));
+  }
+  assert.deepEqual(standardError({ standard_error: { rms_sampled: 1e-4, max: 1e-3 } }), { rms: 1e-4, max: 1e-3 });
+});
+
 test("a study's readiness is said in words", () => {
-  const row: StudyRow = { id: "s", title: "S", participants: { started: 0, in_progress: 0, completed: 0 } };
-  assert.equal(statusText(undefined), null);
-  assert.equal(statusText({ ...row, status: "ready" }), null);
-  assert.match(statusText({ ...row, status: "preparing", detail: { done: 3, total: 10, stimulus: "x" } }) ?? "", /3 of 10 ready/);
-  assert.match(statusText({ ...row, status: "failed", detail: "no such scene" }) ?? "", /no such scene/);
+  const row: StudySummary = { id: "s", title: "S", file_hash: "0", status: "ready", most_trials: 1, participants: { started: 0, in_progress: 0, completed: 0 } };
+  assert.equal(statusText(row), null);
+  assert.match(statusText({ ...row, status: "preparing", progress: { done: 3, total: 10, stimulus: "x" } }) ?? "", /3 of 10 ready/);
+  assert.match(statusText({ ...row, status: "preparing" }) ?? "", /being made\./);
+  assert.match(statusText({ ...row, status: "failed", reason: "no such scene" }) ?? "", /no such scene/);
+});
+
+const versions = ["c0ffee00aa", "beef0123bb", "beef0123cc"].map(
+  (beginning, i): StudyVersion => ({
+    ...{ version: beginning.padEnd(64, "9"), design_hash: "0", title: "S", is_current: i === 0, answers: 0, stimuli: 0 },
+    ...{ first_served_at: "", last_served_at: "", participants: { started: 0, in_progress: 0, completed: 0 } },
+  }),
+);
+const [current, second, third] = versions.map(({ version }) => version) as [string, string, string];
+
+test("an address names versions by hashes or their beginnings, and nothing that could be two", () => {
+  const read = (query: string) => selectionOf("s", new URLSearchParams(query), versions);
+  assert.deepEqual(read(""), { study: "s", version: current, pooled: [] });
+  assert.deepEqual(read("version=current"), read(""));
+  assert.deepEqual(read("version=beef0123b&with=c0ffee00,beef0123c"), { study: "s", version: second, pooled: [current, third] });
+  assert.deepEqual(read(`version=${third}&with=all`), { study: "s", version: third, pooled: [current, second] });
+  assert.deepEqual(read("with=c0ffee00,beef0123b,beef0123b"), { study: "s", version: current, pooled: [second] }, "neither with itself nor twice");
+  for (const [query, name] of [["version=beef0123", "beef0123"], ["version=beef01", "beef01"], ["version=00000000", "00000000"], ["with=beef0123", "beef0123"], ["version=c0ffee00&with=x", "x"]] as const) {
+    assert.deepEqual(read(query), { unknown: name });
+  }
+  assert.deepEqual(selectionOf("s", new URLSearchParams(), []), { study: "s", version: "current", pooled: [] });
+});
+
+test("a selection comes back from its address", () => {
+  const all = [current, second, third];
+  for (const version of all) {
+    for (const pooled of [[], ...all.filter((other) => other !== version).map((other) => [other]), all.filter((other) => other !== version)]) {
+      const address = pageOf({ study: "a study", version, pooled }, versions);
+      const { pathname, searchParams } = new URL(address, "http://x");
+      assert.equal(pathname, "/console/studies/a%20study");
+      assert.deepEqual(selectionOf("a study", searchParams, versions), { study: "a study", version, pooled });
+    }
+  }
+  assert.equal(pageOf({ study: "s", version: current, pooled: [] }, versions), "/console/studies/s");
+});
+
+test("files are of the versions that were chosen", () => {
+  assert.equal(addressOf({ study: "s", version: second, pooled: [] }, "report.md"), `/api/v1/studies/s/versions/${second}/report.md`);
+  assert.equal(addressOf({ study: "s", version: "current", pooled: [second, third] }, "pairs.csv"), `/api/v1/studies/s/versions/current/pairs.csv?with=${second},${third}`);
 });

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { count, fixed, interval, pValue, significant } from "../shared/format.ts";
+import { count, dateSpan, fixed, interval, pValue, significant } from "../shared/format.ts";
 
 test("the paper's numbers look as the paper prints them, with a true minus", () => {
   assert.deepEqual([fixed(0.8125, 3), fixed(-1.4375905, 3), fixed(4.208834, 3)], ["0.813", "−1.438", "4.209"]);
@@ -29,4 +29,9 @@ test("intervals and counts", () => {
   assert.equal(interval(-0.59, 0.098, 2), "−0.59 to 0.10");
   assert.equal(interval(null, 1, 2), "–");
   assert.deepEqual([count(1, "pair"), count(0, "pair"), count(1200, "pair")], ["1 pair", "0 pairs", "1,200 pairs"]);
+});
+
+test("days, one or two", () => {
+  assert.equal(dateSpan("2026-05-04T09:12:00Z", "2026-06-03T18:40:00Z"), "2026-05-04 to 2026-06-03");
+  assert.equal(dateSpan("2026-05-04T09:12:00Z", "2026-05-04T23:59:59Z"), "2026-05-04");
 });

@@ -2,12 +2,26 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { isTemporary, Refused, refusal } from "../shared/http.ts";
 
-test("the server's error body is read, a proxy's page is not", () => {
-  const ours = refusal(409, '{"error":{"code":"already_answered","message":"It stands."}}', null);
+test("the server's problem document is read, a proxy's page is not", () => {
+  const problem = { type: "about:blank", title: "Conflict", status: 409, code: "already_answered", detail: "It stands." };
+  const ours = refusal(409, JSON.stringify(problem), null);
   assert.deepEqual([ours.status, ours.code, ours.message], [409, "already_answered", "It stands."]);
-  for (const text of ["<html>Bad gateway</html>", "{}", '{"error":null}', '{"error":{"code":7}}', "null", ""]) {
-    assert.equal(refusal(502, text, null).code, "http_502", text);
+  // The last of these is another server's problem document: it has no code that we could know.
+  for (const text of ["<html>Bad gateway</html>", "{}", '{"code":null}', '{"code":7}', "null", "", '"code"', "[]", '{"title":"Bad Gateway","status":502}']) {
+    const foreign = refusal(502, text, null);
+    assert.deepEqual([foreign.code, foreign.message], ["http_502", "The server answered with status 502."], text);
   }
+});
+
+test("every field that is wrong is named with its value and its rule", () => {
+  const errors = [
+    { pointer: "/rt", value: -1, rule: "must be a number from 0 to 86400000" },
+    { pointer: "/choice", rule: "must be \"left\" or \"right\"" },
+    { pointer: "/onset", value: null, rule: "must be a number" },
+  ];
+  const found = refusal(422, JSON.stringify({ code: "invalid", detail: "The answer has faults.", errors }), null);
+  assert.equal(found.message, 'The answer has faults. /rt = -1: must be a number from 0 to 86400000. /choice: must be "left" or "right". /onset = null: must be a number.');
+  assert.equal(refusal(422, '{"code":"invalid","title":"Unprocessable","errors":7}', null).message, "Unprocessable");
 });
 
 test("what may be tried again", () => {

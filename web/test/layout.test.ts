@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { fitPair, inkOn, srgbCode } from "../participant/layout.ts";
+import { fitOne, fitPair, inkOn, srgbCode } from "../participant/layout.ts";
 
 const fit = (roomWidth: number, roomHeight: number, devicePixelRatio = 1) =>
   fitPair({ width: 592, height: 333, roomWidth, roomHeight, devicePixelRatio });
@@ -43,6 +43,16 @@ test("room that is one pixel short is noticed", () => {
   assert.equal(fit(2 * 592 + 30, 333).scale, 1);
   assert.ok(fit(2 * 592 + 29, 333).scale < 1);
   assert.ok(fit(2 * 592 + 30, 332).scale < 1);
+});
+
+test("one picture has the room of two", () => {
+  const one = (roomWidth: number, roomHeight: number, devicePixelRatio = 1) => fitOne({ width: 592, height: 333, roomWidth, roomHeight, devicePixelRatio });
+  assert.deepEqual(one(1252, 600), { scale: 1, width: 592, height: 333 });
+  assert.deepEqual(one(1252, 600, 2), { scale: 1, width: 296, height: 166.5 });
+  assert.deepEqual(one(362, 700), { scale: 362 / 592, width: 362, height: 204 });
+  assert.equal(one(592, 333).scale, 1);
+  assert.ok(one(591, 333).scale < 1);
+  assert.ok(one(592, 332).scale < 1);
 });
 
 test("the grey is the study's linear luminance, encoded by sRGB", () => {

@@ -1,9 +1,10 @@
-// Screenshots of every page at desktop and phone size, from the mock server: `node test/look.mjs DIST OUT`.
+// Screenshots of every page at desktop and phone size, from the mock server: `node --import ./test/typescript.mjs test/look.mjs DIST OUT [participant|interval|console]`.
 import { mkdir } from "node:fs/promises";
 import { join } from "node:path";
-import { launch, sizes } from "./browser.mjs";
-import { startMock, study } from "./mock-server.mjs";
-import { results } from "./mock-results.mjs";
+import { launch, sizes } from "./browser/chromium.mjs";
+import { results, versions } from "./mock-results.ts";
+import { startMock } from "./mock-server.ts";
+import { intervals, material, study } from "./mock-study.ts";
 
 const [dist, out, only] = process.argv.slice(2);
 await mkdir(out, { recursive: true });
@@ -43,13 +44,42 @@ async function participant(name, options) {
   await shot("4-thanks");
   const wide = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
   if (wide) console.log(name, "scrolls sideways");
-  console.log(name, JSON.stringify(mock.log.filter((l) => l.method === "PUT").at(-1).body));
+  console.log(name, mock.log.filter((l) => l.method === "PUT").at(-1).text);
+  await context.close();
+  await mock.close();
+}
+
+async function interval(name, options) {
+  const stuff = intervals({ stills: 1, settings: { fixation_ms: 2500, first_ms: 2500, mask_ms: 2500, second_ms: 2500 } });
+  const mock = await startMock({ dist, stuff, grow: { start: 1, most: 43 } });
+  const context = await browser.newContext(options);
+  const page = await context.newPage();
+  const shot = (step) => page.screenshot({ path: join(out, `interval-${step}-${name}.png`) });
+  await page.goto(`${mock.url}/study/${study.id}`);
+  await page.getByTestId("consent-agree").click();
+  await page.getByTestId("start").waitFor();
+  await shot("1-instructions");
+  await page.getByTestId("start").click();
+  await page.locator("canvas").waitFor();
+  for (const step of ["2-fixation", "3-first", "4-mask", "5-second"]) {
+    await page.waitForTimeout(step === "2-fixation" ? 1200 : 2500);
+    await shot(step);
+  }
+  const first = page.getByTestId("choice-first");
+  await first.waitFor({ state: "visible" });
+  await shot("6-response");
+  await page.keyboard.press("Tab");
+  await shot("6-response-focus");
+  await first.click();
+  await page.waitForTimeout(60);
+  await shot("7-chosen");
   await context.close();
   await mock.close();
 }
 
 async function console_(name, options, scheme) {
-  const mock = await startMock({ dist, results });
+  const stuff = material();
+  const mock = await startMock({ dist, stuff, results: results(stuff) });
   const context = await browser.newContext({ ...options, colorScheme: scheme });
   const page = await context.newPage();
   const shot = (step, full = false) => page.screenshot({ path: join(out, `console-${step}-${name}-${scheme}.png`), fullPage: full });
@@ -66,11 +96,13 @@ async function console_(name, options, scheme) {
   await page.getByTestId("login-submit").click();
   await page.getByRole("heading", { name: "Studies" }).waitFor();
   await shot("2-studies");
-  for (const id of [study.id, "empty"]) {
+  const pooled = `${study.id}?version=${versions.before.slice(0, 12)}&with=${versions.current.slice(0, 12)},${versions.pilot.slice(0, 12)}`;
+  for (const [label, id] of [[study.id, study.id], ["empty", "empty"], ["pooled", pooled]]) {
     await page.goto(`${mock.url}/console/studies/${id}`);
     await page.getByText("Participants").first().waitFor();
     await page.waitForTimeout(1000);
-    await shot(`3-study-${id}`, true);
+    await shot(`3-study-${label}`, true);
+    if (label === "pooled") await shot("4-pooled-top");
     if (await page.evaluate(() => document.documentElement.scrollWidth > innerWidth)) console.log(name, id, "scrolls sideways");
   }
   await context.close();
@@ -78,7 +110,8 @@ async function console_(name, options, scheme) {
 }
 
 for (const [name, options] of Object.entries(sizes)) {
-  if (only !== "console") await participant(name, options);
-  if (only !== "participant") for (const scheme of ["light", "dark"]) await console_(name, { ...options, deviceScaleFactor: 1 }, scheme);
+  if (only === undefined || only === "participant") await participant(name, options);
+  if (only === undefined || only === "interval") await interval(name, options);
+  if (only === undefined || only === "console") for (const scheme of ["light", "dark"]) await console_(name, { ...options, deviceScaleFactor: 1 }, scheme);
 }
 await browser.close();

@@ -5,7 +5,7 @@ import { position, remaining, withAnswered } from "../participant/plan.ts";
 
 const ref = { sha256: "0", url: "/stimuli/0" };
 const trial = (trial_index: number, answered = false): Trial => ({
-  ...{ trial_index, answered, block_id: "b", block_index: 0, pair_index: 0, kind: "still", left: ref, right: ref, width: 592, height: 333 },
+  ...{ trial_index, answered, trial: "two-alternative", block_index: 0, item_index: 0, kind: "still", shown: { left: ref, right: ref }, settings: null, width: 592, height: 333 },
 });
 const indices = (trials: Trial[]) => trials.map((t) => t.trial_index);
 
@@ -29,11 +29,25 @@ test("nothing remains when all is answered or waiting", () => {
 });
 
 test("position counts from one over the whole plan", () => {
-  const trials = [trial(0, true), trial(1), trial(2)];
-  assert.deepEqual(position(trials, trials[2] as Trial), { number: 3, of: 3 });
-  assert.deepEqual(position(trials, trials[0] as Trial), { number: 1, of: 3 });
+  const plan = { trials: [trial(0, true), trial(1), trial(2)], more: false, most_trials: 3 };
+  assert.equal(position(plan, trial(2)), "3 of 3");
+  assert.equal(position(plan, trial(0)), "1 of 3");
+});
+
+test("while a plan grows its length is not known, only its most", () => {
+  const plan = { trials: [trial(0, true), trial(1)], more: true, most_trials: 43 };
+  assert.equal(position(plan, trial(1)), "2 of at most 43");
+  assert.equal(position({ ...plan, more: false }, trial(1)), "2 of 2");
 });
 
 test("an acknowledged trial is answered, and only that one", () => {
   assert.deepEqual(withAnswered([trial(0), trial(1)], 1).map((t) => t.answered), [false, true]);
+});
+
+test("decided trials are added once, and never change what is known", () => {
+  const grown = withAnswered([trial(0), trial(1)], 0, [{ ...trial(1), width: 7 }, trial(2)]);
+  assert.deepEqual(indices(grown), [0, 1, 2]);
+  assert.deepEqual(grown.map((t) => [t.answered, t.width]), [[true, 592], [false, 592], [false, 592]]);
+  // An answer that was resent brings its trials again.
+  assert.deepEqual(indices(withAnswered(grown, 0, [trial(1), trial(2)])), [0, 1, 2]);
 });

@@ -4,7 +4,8 @@ use crate::api::{Problem, ProblemCode};
 use crate::library::Library;
 use crate::limiter::Limiter;
 use crate::making::{Maker, Making, StimulusMap};
-use kelir_store::{Store, StoreError, StoredAnswers};
+use crate::selection::{Selection, SelectionError, VersionRef, With};
+use kelir_store::{Session, Store, StoreError, StoredAnswers};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::Answers;
 use std::collections::{BTreeMap, HashMap};
@@ -23,24 +24,41 @@ pub(crate) struct App {
     /// A report resamples participants thousands of times.
     pub(crate) reporting: Semaphore,
     pub(crate) secure_cookies: bool,
-    /// Earlier versions of studies, which sessions that began with them go on using.
-    versions: RwLock<HashMap<String, Arc<StudyDefinition>>>,
+    /// What sessions that began with other files or versions go on with, by study, file and version.
+    begun: RwLock<HashMap<[String; 3], Begun>>,
+    /// Answers as last read, by study and versions: what has come since is all that a result has to read.
+    answers: tokio::sync::Mutex<HashMap<Vec<String>, StoredAnswers>>,
 }
+
+/// What a session goes on with: the file that it began with, and what its version shows.
+#[derive(Clone)]
+pub(crate) struct Begun {
+    pub(crate) study: Arc<StudyDefinition>,
+    pub(crate) stimuli: Arc<StimulusMap>,
+}
+
+/// Selections of versions whose answers are kept.
+const MOST_KEPT: usize = 32;
 
 /// A study that is being served.
 pub(crate) struct LoadedStudy {
     pub(crate) study: Arc<StudyDefinition>,
-    pub(crate) config_hash: String,
-    pub(crate) stimuli: RwLock<Stimuli>,
-    /// The answers as last read: what has come since is all that a result has to read.
-    answers: tokio::sync::Mutex<StoredAnswers>,
+    pub(crate) file_hash: String,
+    stimuli: RwLock<Stimuli>,
+}
+
+/// A study's version with all that it shows.
+#[derive(Debug)]
+pub(crate) struct Served {
+    pub(crate) version: String,
+    pub(crate) stimuli: Arc<StimulusMap>,
 }
 
 /// How far a study's stimuli are.
 #[derive(Clone, Debug)]
 pub(crate) enum Stimuli {
     Preparing(Option<Making>),
-    Ready(Arc<StimulusMap>),
+    Ready(Arc<Served>),
     Failed(String),
 }
 
@@ -53,9 +71,8 @@ impl App {
         secure_cookies: bool,
     ) -> App {
         let loaded = |study: StudyDefinition| LoadedStudy {
-            config_hash: study.config_hash(),
+            file_hash: study.file_hash(),
             stimuli: RwLock::new(Stimuli::Preparing(None)),
-            answers: tokio::sync::Mutex::new(StoredAnswers::new(&study)),
             study: Arc::new(study),
         };
         App {
@@ -67,7 +84,8 @@ impl App {
             judging: Semaphore::new(2),
             reporting: Semaphore::new(1),
             secure_cookies,
-            versions: RwLock::default(),
+            begun: RwLock::default(),
+            answers: tokio::sync::Mutex::default(),
         }
     }
 
@@ -75,28 +93,69 @@ impl App {
         self.studies.get(id).ok_or_else(|| Problem::not_found("study"))
     }
 
-    /// The definition that a session began with.
-    pub(crate) async fn version(
+    /// The version of a study that is served now; `None` while its stimuli are not all made.
+    pub(crate) fn current(&self, id: &str) -> Option<String> {
+        match self.studies.get(id)?.stimuli() {
+            Stimuli::Ready(served) => Some(served.version.clone()),
+            _ => None,
+        }
+    }
+
+    /// What a session began with.
+    pub(crate) async fn begun(&self, session: &Session) -> Result<Begun, Box<Problem>> {
+        if let Some(loaded) = self.studies.get(&session.study_id)
+            && let Stimuli::Ready(served) = loaded.stimuli()
+            && (&loaded.file_hash, &served.version) == (&session.file_hash, &session.version)
+        {
+            return Ok(Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() });
+        }
+        let key = [&session.study_id, &session.file_hash, &session.version].map(String::clone);
+        if let Some(begun) = self.begun.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return Ok(begun.clone());
+        }
+        let study = self.store.study_file(&session.study_id, &session.file_hash).await?;
+        let study = study.ok_or_else(|| Problem::internal("a session's study file is not stored"))?;
+        let stimuli = self.store.version_stimuli(&session.study_id, &session.version).await?;
+        let begun = Begun { study: Arc::new(study), stimuli: Arc::new(stimuli.into_iter().collect()) };
+        self.begun.write().unwrap_or_else(PoisonError::into_inner).insert(key, begun.clone());
+        Ok(begun)
+    }
+
+    /// The versions of a study that are asked for.
+    pub(crate) async fn select(
         &self,
         study_id: &str,
-        config_hash: &str,
-    ) -> Result<Arc<StudyDefinition>, Box<Problem>> {
-        if let Some(loaded) = self.studies.get(study_id)
-            && loaded.config_hash == config_hash
-        {
-            return Ok(loaded.study.clone());
+        version: &VersionRef,
+        with: &With,
+    ) -> Result<Selection, Box<Problem>> {
+        let current = self.current(study_id);
+        let selection = Selection::of(&self.store, study_id, current.as_deref(), version, with).await;
+        match selection {
+            // Not served and never was: the study is what is not there.
+            Err(SelectionError::NoVersion) if !self.studies.contains_key(study_id) => {
+                Err(Problem::not_found("study"))
+            }
+            Err(SelectionError::Unknown(_, known))
+                if known.is_empty() && !self.studies.contains_key(study_id) =>
+            {
+                Err(Problem::not_found("study"))
+            }
+            selection => Ok(selection?),
         }
-        if let Some(study) = self.versions.read().unwrap_or_else(PoisonError::into_inner).get(config_hash) {
-            return Ok(study.clone());
+    }
+
+    /// Every answer to the chosen versions that there is now.
+    pub(crate) async fn answers(&self, selection: &Selection) -> Result<Arc<Answers>, StoreError> {
+        let key: Vec<String> =
+            std::iter::once(&selection.study.id).chain(&selection.versions).cloned().collect();
+        let mut kept = self.answers.lock().await;
+        if kept.len() >= MOST_KEPT && !kept.contains_key(&key) {
+            kept.clear();
         }
-        let versions = self.store.study_versions(study_id).await?;
-        let version = versions.into_iter().find(|v| v.config_hash == config_hash);
-        let study = Arc::new(
-            version.ok_or_else(|| Problem::internal("a session's study version is not stored"))?.study,
-        );
-        let mut versions = self.versions.write().unwrap_or_else(PoisonError::into_inner);
-        versions.insert(config_hash.to_owned(), study.clone());
-        Ok(study)
+        let new = || StoredAnswers::new(&selection.study, &selection.versions);
+        let stored = kept.entry(key).or_insert_with(new);
+        self.store.read_on(stored).await?;
+        Ok(stored.answers())
     }
 }
 
@@ -104,13 +163,6 @@ impl LoadedStudy {
     /// How long a session may be silent and still hold its place.
     pub(crate) fn idle(&self) -> Duration {
         Duration::from_secs(60 * u64::from(self.study.idle_minutes))
-    }
-
-    /// Every answer there is now.
-    pub(crate) async fn answers(&self, store: &Store) -> Result<Arc<Answers>, StoreError> {
-        let mut stored = self.answers.lock().await;
-        store.read_on(&mut stored).await?;
-        Ok(stored.answers())
     }
 
     pub(crate) fn stimuli(&self) -> Stimuli {
@@ -121,10 +173,10 @@ impl LoadedStudy {
         *self.stimuli.write().unwrap_or_else(PoisonError::into_inner) = stimuli;
     }
 
-    /// The stimuli, or the answer that says they are not ready.
-    pub(crate) fn ready(&self) -> Result<Arc<StimulusMap>, Box<Problem>> {
+    /// The version with its stimuli, or the answer that says they are not ready.
+    pub(crate) fn ready(&self) -> Result<Arc<Served>, Box<Problem>> {
         match self.stimuli() {
-            Stimuli::Ready(map) => Ok(map),
+            Stimuli::Ready(served) => Ok(served),
             Stimuli::Preparing(making) => {
                 let (done, total) = making.map_or((0, 0), |m| (m.done, m.total));
                 let detail = format!(

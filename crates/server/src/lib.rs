@@ -17,16 +17,18 @@ mod picture;
 mod render;
 pub mod results;
 mod routes;
+mod selection;
 mod server;
 mod viewer;
 mod web;
 
 pub use error::{StartError, StudyFileError};
-pub use export::{CODEBOOK, codebook, codebook_csv, responses_csv};
+pub use export::{codebook_csv, responses_csv};
 pub use library::{Library, check_study};
 pub use making::{Made, Maker, Making, Task};
 pub use render::RenderMaker;
 pub use routes::openapi_json;
+pub use selection::{Selection, SelectionError, VersionRef, With};
 pub use server::{Handle, Server, ServerConfig};
 
 /// Re-exported for callers that read a data folder without a server.

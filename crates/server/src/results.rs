@@ -1,5 +1,6 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
+use crate::api::StudyVersion;
 use crate::export::write_row;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
 use kelir_report::{Chain, DifferentStimulus, Fault, Participants, PooledVersion, Stimulus, StudyReport};
@@ -15,6 +16,7 @@ use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 use utoipa::ToSchema;
 
 pub use kelir_report::Excluded;
@@ -109,6 +111,11 @@ async fn participants(store: &Store, selection: &Selection) -> Result<Participan
         in_progress: sum.in_progress + counts.participants.in_progress,
         completed: sum.completed + counts.participants.completed,
     }))
+}
+
+/// The store's counts as the report has them.
+pub(crate) fn counted(people: kelir_store::Participants) -> Participants {
+    Participants { started: people.started, in_progress: people.in_progress, completed: people.completed }
 }
 
 fn stimulus(shown: StudyStimulus) -> Stimulus {
@@ -227,6 +234,41 @@ fn screened<'a>(
         }
     }
     (everybody, judged, excluded)
+}
+
+/// The versions of a study, the one that is served (`current`; absent: that was served last) first, with what each has gathered.
+///
+/// # Errors
+/// The store cannot be read.
+pub async fn versions(
+    store: &Store,
+    study_id: &str,
+    current: Option<&str>,
+) -> Result<Vec<StudyVersion>, StoreError> {
+    let mut known = store.study_versions(study_id).await?;
+    if let Some(at) = known.iter().position(|version| Some(version.version.as_str()) == current) {
+        known[..=at].rotate_right(1);
+    }
+    let Some(idle) = known.first().map(|first| 60 * u64::from(first.study.idle_minutes)) else {
+        return Ok(Vec::new());
+    };
+    let counts = store.version_counts(study_id, Duration::from_secs(idle)).await?;
+    let mut versions = Vec::with_capacity(known.len());
+    for (place, version) in known.into_iter().enumerate() {
+        let gathered = counts.get(&version.version).copied().unwrap_or_default();
+        versions.push(StudyVersion {
+            is_current: place == 0,
+            title: version.study.title,
+            participants: counted(gathered.participants),
+            answers: gathered.answers,
+            stimuli: store.version_stimuli(study_id, &version.version).await?.len(),
+            version: version.version,
+            design_hash: version.design_hash,
+            first_served_at: version.first_served_at,
+            last_served_at: version.last_served_at,
+        });
+    }
+    Ok(versions)
 }
 
 /// Why there are no results.

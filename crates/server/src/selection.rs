@@ -196,7 +196,8 @@ impl Selection {
             }
         }
         let different = different.into_iter();
-        let named = different.map(|((item, condition), versions)| DifferentStimulus { item, condition, versions });
+        let named =
+            different.map(|((item, condition), versions)| DifferentStimulus { item, condition, versions });
         Ok((first, named.collect()))
     }
 }

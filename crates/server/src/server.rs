@@ -1,6 +1,6 @@
 //! Opening, starting and stopping.
 
-use crate::app::{App, Stimuli};
+use crate::app::{App, LoadedStudy, Served, Stimuli};
 use crate::error::StartError;
 use crate::library::Library;
 use crate::making::{self, Maker, Making};
@@ -48,7 +48,7 @@ impl Server {
         let store = Store::open(&config.data).await?;
         password::set_up(&store, config.password.as_deref()).await?;
         for study in &studies {
-            store.put_study(study).await?;
+            store.put_study_file(study).await?;
         }
         let app = App::new(store, library, config.maker.clone(), studies, config.secure_cookies);
         Ok(Server { app: Arc::new(app) })
@@ -104,11 +104,19 @@ impl Server {
             };
             let app = &self.app;
             match making::make(&loaded.study, &app.store, &app.library, &app.maker, &report).await {
-                Ok(map) => loaded.set_stimuli(Stimuli::Ready(Arc::new(map))),
+                Ok(stimuli) => {
+                    // The version is fixed when all that it shows is there.
+                    let version = app.store.put_version(&loaded.study, &stimuli.all()).await;
+                    match version {
+                        Ok(version) => loaded.set_stimuli(Stimuli::Ready(Arc::new(Served {
+                            version,
+                            stimuli: Arc::new(stimuli),
+                        }))),
+                        Err(error) => failed(id, loaded, error.to_string(), &mut wrong),
+                    }
+                }
                 Err(error) => {
-                    tracing::error!("study {id}: {error}");
-                    loaded.set_stimuli(Stimuli::Failed(error.to_string()));
-                    wrong.push(format!("study {id}: {error}"));
+                    failed(id, loaded, error.to_string(), &mut wrong);
                 }
             }
         }
@@ -129,6 +137,13 @@ impl Server {
     pub fn password_file(&self) -> Option<PathBuf> {
         Some(password::file(self.app.store.folder())).filter(|path| path.exists())
     }
+}
+
+/// Notes that a study cannot be taken, and why.
+fn failed(id: &str, loaded: &LoadedStudy, reason: String, wrong: &mut Vec<String>) {
+    tracing::error!("study {id}: {reason}");
+    wrong.push(format!("study {id}: {reason}"));
+    loaded.set_stimuli(Stimuli::Failed(reason));
 }
 
 /// A running server; dropping it stops it.

@@ -215,7 +215,7 @@ fn sent() -> Vec<(String, Column)> {
 /// The columns of one role, in trials that have it.
 fn of_role(role: Role) -> [Column; 2] {
     let column = |what: &str, meaning: &str| Column {
-        name: format!("shown_{}_{what}", role.name()),
+        name: format!("shown_{}_{what}", role.as_str()),
         kind: "text".to_owned(),
         unit: String::new(),
         meaning: format!("{meaning} {}; empty in trials without", role.meaning()),
@@ -235,7 +235,7 @@ pub fn codebook() -> Vec<Column> {
     }
     all.retain(|column| !FIRST.contains(&column.name.as_str()));
     columns.extend(all);
-    columns.extend(Role::ALL.into_iter().flat_map(of_role));
+    columns.extend(Role::ALL.iter().copied().flat_map(of_role));
     columns
 }
 
@@ -318,7 +318,7 @@ fn trial_columns(answered: &Answered<'_>) -> TrialColumns {
         right_condition: condition(Role::Right),
         left_sha256: sha256(Role::Left),
         right_sha256: sha256(Role::Right),
-        response: chosen.map(|role| role.name().to_owned()),
+        response: chosen.map(|role| role.as_str().to_owned()),
         chosen_condition,
         target_condition: target.to_owned(),
         target_chosen,

@@ -1,7 +1,7 @@
 //! What a study is, once its file has been read and found right.
 
 use crate::adaptive::Adaptive;
-use crate::trials::TrialKind;
+use crate::trials::{TrialKind, TrialName};
 use kelir_stats::psychometric::{Lapse, Sigmoid};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -227,6 +227,18 @@ impl StudyDefinition {
     /// The most trials that a participant can see; fewer where an adaptive block ends early.
     pub fn most_trials(&self) -> usize {
         self.blocks.iter().map(Block::most_trials).sum()
+    }
+
+    /// The kinds of its trials, in the order of first use.
+    pub fn trial_names(&self) -> Vec<TrialName> {
+        let mut names = Vec::new();
+        for block in &self.blocks {
+            let name = block.trial.rules().name();
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
     }
 
     /// The block with this id.

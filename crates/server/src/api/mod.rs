@@ -10,20 +10,17 @@ mod sessions;
 mod studies;
 mod versions;
 
-pub use answers::{
-    Answer, AnswerCommon, Arrangement, Device, FrameLog, Length, Side, StepFrames, StepTimes,
-    TwoAlternativeAnswer, TwoIntervalAnswer, Which,
-};
+pub use answers::Answer;
 pub use auth::{SignIn, SignedIn};
 pub use lists::ListQuery;
 pub use problem::{Problem, ProblemCode, StoredAnswer};
 pub use sessions::{
-    Acknowledgement, Completion, CreatedSession, IntervalSettings, Known, NewSession, Role, SessionState,
-    SessionStatus, StimulusRef, Trial, TrialKind,
+    Acknowledgement, Completion, CreatedSession, Known, NewSession, SessionState, SessionStatus, StimulusRef,
+    Trial,
 };
 pub use studies::{
     Codebook, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, VersionList,
 };
-pub use versions::{Pooling, VersionRef, With};
+pub use versions::{Pooling, version_ref};
 
 pub(crate) use refusals::{refusals, responses};

@@ -123,11 +123,23 @@ pub struct Problem {
 pub struct StoredAnswer {
     /// When the server committed it, ISO-8601 UTC.
     pub received_at: String,
-    /// What analyses read of it.
-    pub answer: Map<String, Value>,
+    /// What analyses read of it; null once it was blanked by a withdrawal.
+    #[schema(required)]
+    pub answer: Option<Map<String, Value>>,
     /// All that the browser sent; null once it was blanked by a withdrawal.
     #[schema(required)]
     pub payload: Option<Map<String, Value>>,
+}
+
+impl From<kelir_store::StoredAnswer> for StoredAnswer {
+    fn from(stored: kelir_store::StoredAnswer) -> StoredAnswer {
+        let object = |value: Option<Value>| value.and_then(|value| value.as_object().cloned());
+        StoredAnswer {
+            received_at: stored.received_at,
+            answer: object(stored.answer),
+            payload: object(stored.payload),
+        }
+    }
 }
 
 impl Problem {

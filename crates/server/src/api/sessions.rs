@@ -2,6 +2,7 @@
 
 use kelir_study::Kind;
 use kelir_study::schema::worded;
+use kelir_study::trials::{Intervals, Role, TrialName};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -46,30 +47,6 @@ worded! {
     }
 }
 
-worded! {
-    /// How stimuli are shown and asked about.
-    pub enum TrialKind {
-        /// Two stimuli at once, one of which is chosen.
-        TwoAlternative = "two-alternative",
-        /// Two stimuli one after the other, one of which is chosen.
-        TwoInterval = "two-interval",
-    }
-}
-
-worded! {
-    /// Which of a trial's stimuli it is.
-    pub enum Role {
-        /// The one on the left (two-alternative).
-        Left = "left",
-        /// The one on the right (two-alternative).
-        Right = "right",
-        /// The one shown first (two-interval).
-        First = "first",
-        /// The one shown second (two-interval).
-        Second = "second",
-    }
-}
-
 /// The bytes of one stimulus: what they hash to and where they are.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct StimulusRef {
@@ -79,30 +56,13 @@ pub struct StimulusRef {
     pub url: String,
 }
 
-/// How long the steps of a two-interval trial last, in ms; 0 leaves a step out.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct IntervalSettings {
-    /// Fixation mark before the first stimulus.
-    #[schema(minimum = 0)]
-    pub fixation_ms: f64,
-    /// First stimulus.
-    #[schema(minimum = 0)]
-    pub first_ms: f64,
-    /// Mask between the stimuli.
-    #[schema(minimum = 0)]
-    pub mask_ms: f64,
-    /// Second stimulus.
-    #[schema(minimum = 0)]
-    pub second_ms: f64,
-}
-
 /// One trial as the page needs it; its conditions stay on the server.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Trial {
     /// Place in the session, from 0.
     pub trial_index: u32,
     /// How it is shown and asked.
-    pub trial: TrialKind,
+    pub trial: TrialName,
     /// Place of its block in the study, from 0.
     pub block_index: u32,
     /// Place of its item in the block's file order, from 0.
@@ -113,7 +73,7 @@ pub struct Trial {
     pub shown: BTreeMap<Role, StimulusRef>,
     /// Settings of its kind; null for kinds that have none.
     #[schema(required)]
-    pub settings: Option<IntervalSettings>,
+    pub settings: Option<Intervals>,
     /// Width of its stimuli in pixels.
     pub width: u32,
     /// Height of its stimuli in pixels.

@@ -3,10 +3,9 @@
 use kelir_report::Participants;
 use kelir_study::Texts;
 use kelir_study::schema::{Column, worded};
+use kelir_study::trials::TrialName;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
-
-use super::TrialKind;
 
 /// What a study says of itself before anybody takes part.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -27,7 +26,7 @@ pub struct Study {
     /// How long taking part is said to take, in minutes.
     pub estimated_minutes: u32,
     /// Kinds of trial, in the order of first use.
-    pub trial_kinds: Vec<TrialKind>,
+    pub trial_kinds: Vec<TrialName>,
 }
 
 worded! {

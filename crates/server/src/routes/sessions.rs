@@ -3,16 +3,20 @@
 use super::studies::StudyPath;
 use super::{Answered, Fresh};
 use crate::api::{
-    Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode, Role,
-    SessionState, SessionStatus, Side, StimulusRef, Trial, TrialKind, TwoAlternativeAnswer, refusals,
+    Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
+    SessionState, SessionStatus, StimulusRef, Trial, refusals,
 };
-use crate::app::App;
+use crate::app::{App, Begun};
 use crate::extract::{Body, Object, Parameters, Participant, Query};
+use crate::making::StimulusMap;
 use crate::password::{random_code, random_token};
 use axum::extract::State;
 use axum::http::StatusCode;
-use kelir_store::{Appended, Completed, NewResponse, PlannedSession, PlannedTrial, Session, sha256_hex};
-use kelir_study::{StudyDefinition, TrialPlan};
+use kelir_store::{
+    Appended, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session,
+    StimulusHashes, sha256_hex,
+};
+use kelir_study::{Decision, StudyDefinition, TrialKind, TrialPlan, next_trials};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -53,33 +57,44 @@ pub(crate) async fn create_session(
     Body(new): Body<NewSession>,
 ) -> Result<(StatusCode, Fresh<CreatedSession>), Box<Problem>> {
     let loaded = app.study(&study)?;
-    let stimuli = loaded.ready()?;
+    let served = loaded.ready()?;
     let token = random_token();
     let params = new.params.unwrap_or_default();
     let new = kelir_store::NewSession {
         study_id: loaded.study.id.clone(),
-        config_hash: loaded.config_hash.clone(),
+        version: served.version.clone(),
+        file_hash: loaded.file_hash.clone(),
         subject_id: subject(&params),
         token_hash: sha256_hex(token.as_bytes()),
         params: params.into_iter().collect(),
         display: new.display.unwrap_or_default().into(),
         idle: loaded.idle(),
     };
-    let hash = |pair: &str, condition: &str| {
-        stimuli.get(&(pair.to_owned(), condition.to_owned())).cloned().unwrap_or_default()
-    };
     let plan = |slot| {
-        let plan = TrialPlan::for_slot(&loaded.study, slot);
-        let filled = |trial: kelir_study::Trial| PlannedTrial {
-            left_sha256: hash(&trial.item_id, &trial.left),
-            right_sha256: hash(&trial.item_id, &trial.right),
-            trial,
-        };
-        PlannedSession { seed: plan.seed, trials: plan.trials.into_iter().map(filled).collect() }
+        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&loaded.study, slot);
+        let next = NextTrials { trials: planned(&served.stimuli, trials)?, more };
+        Ok::<_, Box<Problem>>(PlannedSession { seed, next })
     };
     let session = app.store.create_session(new, plan).await?;
     let state = state_of(&app, &session).await?;
     Ok((StatusCode::CREATED, Fresh(CreatedSession { state, token })))
+}
+
+/// Trials with their stimuli filled in.
+fn planned(
+    stimuli: &StimulusMap,
+    trials: Vec<kelir_study::Trial>,
+) -> Result<Vec<PlannedTrial>, Box<Problem>> {
+    let fill = |trial: kelir_study::Trial| {
+        let mut hashes = BTreeMap::new();
+        for (role, placed) in &trial.shown {
+            let stimulus = stimuli.get(&placed.item, &placed.condition).map_err(Problem::internal)?;
+            let (sha256, pixels_sha256) = (stimulus.sha256.clone(), stimulus.pixels_sha256.clone());
+            hashes.insert(*role, StimulusHashes { sha256, pixels_sha256 });
+        }
+        Ok(PlannedTrial { trial, stimuli: hashes })
+    };
+    trials.into_iter().map(fill).collect()
 }
 
 refusals!(NoSession: Unauthorized, NotFound);
@@ -106,7 +121,8 @@ pub(crate) async fn give_consent(
     Participant(session): Participant,
     State(app): State<Arc<App>>,
 ) -> Answered<SessionState> {
-    app.store.consent(&session.session_id).await?;
+    let text = app.begun(&session).await?.study.texts.consent.join("\n\n");
+    app.store.consent(&session.session_id, &sha256_hex(text.as_bytes())).await?;
     let session = app.store.session(&session.session_id).await?;
     let session = session.ok_or_else(|| Problem::internal("a session is gone"))?;
     Ok(Fresh(state_of(&app, &session).await?))
@@ -133,24 +149,45 @@ pub(crate) async fn put_answer(
     let no_trial = || Problem::not_found("trial");
     // Plain digits alone: "+1" and "01" are other addresses, not other names of a trial.
     let index = trial_index.parse().ok().filter(|i: &u32| i.to_string() == trial_index);
-    let trial_index = index.filter(|i| (*i as usize) < session.trials.len()).ok_or_else(no_trial)?;
+    let trials = app.store.trials(&session.session_id).await?;
+    let planned_trial = index.and_then(|i| trials.get(i as usize)).ok_or_else(no_trial)?;
     if session.consented_at.is_none() {
         return Err(Problem::new(ProblemCode::NoConsent, "An answer can be stored only after consent."));
     }
-    let answer: TwoAlternativeAnswer = body.read(Answer::record(TrialKind::TwoAlternative))?;
-    let chose_left = answer.choice == Side::Left;
-    let new = NewResponse { trial_index, chose_left, rt_ms: answer.common.rt, payload: body.text };
-    match app.store.append_response(&session, new).await? {
+    let checked = planned_trial.trial.trial.rules().check(&body.value);
+    let answer = checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))?.answer;
+    let new = NewAnswer { trial_index: planned_trial.trial.trial_index, answer, payload: body.text };
+    let begun = app.begun(&session).await?;
+    let next = |progress: Progress| next_of(&begun, session.slot, &progress);
+    match app.store.append_answer(&session, &new, next).await? {
         Appended::Stored | Appended::Same => {}
-        Appended::Different => {
+        Appended::Different(stored) => {
             let detail = "This trial has an answer already; the first one stands.";
-            return Err(Problem::new(ProblemCode::AlreadyAnswered, detail));
+            let mut problem = Problem::new(ProblemCode::AlreadyAnswered, detail);
+            problem.stored = Some((*stored).into());
+            return Err(problem);
         }
         Appended::NoSuchTrial => return Err(no_trial()),
     }
+    let session = app.store.session(&session.session_id).await?;
+    let session = session.ok_or_else(|| Problem::internal("a session is gone"))?;
     let SessionState { next_trial, more, trials, .. } = state_of(&app, &session).await?;
     let trials = known.known.map(|known| trials.into_iter().skip(known).collect()).unwrap_or_default();
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
+}
+
+/// What follows in a session from what it was shown and answered.
+fn next_of(begun: &Begun, slot: u32, progress: &Progress) -> Result<NextTrials, Box<Problem>> {
+    let study = &begun.study;
+    let chose_target = |index: u32| {
+        let trial = &progress.trials.get(index as usize)?.trial;
+        let chosen = trial.trial.rules().chosen(progress.answers.get(&index)?)?;
+        Some(trial.shown.get(&chosen)?.condition == study.block(&trial.block_id)?.target)
+    };
+    let decided: Vec<kelir_study::Trial> =
+        progress.trials.iter().map(|planned| planned.trial.clone()).collect();
+    let Decision { trials, more } = next_trials(study, slot, &decided, &chose_target);
+    Ok(NextTrials { trials: planned(&begun.stimuli, trials)?, more })
 }
 
 refusals!(NotComplete: Unauthorized, NotFound, Incomplete);
@@ -164,7 +201,7 @@ pub(crate) async fn complete_session(
     Participant(session): Participant,
     State(app): State<Arc<App>>,
 ) -> Answered<Completion> {
-    let study = app.version(&session.study_id, &session.config_hash).await?;
+    let study = app.begun(&session).await?.study;
     let code = study.completion.code.clone().unwrap_or_else(|| {
         let code = random_code(8);
         format!("{}-{}", &code[..4], &code[4..])
@@ -172,19 +209,23 @@ pub(crate) async fn complete_session(
     match app.store.complete(&session, &code).await? {
         Completed::Code(code) => Ok(Fresh(completion(&study, &session, code))),
         Completed::Missing(missing) => {
-            let detail = format!("{} of {} trials have no answer yet.", missing.len(), session.trials.len());
+            let detail = match missing.len() {
+                0 => "More trials follow from the answers.".to_owned(),
+                1 => "1 trial has no answer yet.".to_owned(),
+                n => format!("{n} trials have no answer yet."),
+            };
             let mut problem = Problem::new(ProblemCode::Incomplete, detail);
-            (problem.missing, problem.more) = (Some(missing), Some(false));
+            (problem.missing, problem.more) = (Some(missing), Some(session.more));
             Err(problem)
         }
     }
 }
 
 async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Problem>> {
-    let study = app.version(&session.study_id, &session.config_hash).await?;
+    let study = app.begun(session).await?.study;
     let answered = app.store.answered(&session.session_id).await?;
-    let trials: Vec<Trial> =
-        session.trials.iter().map(|planned| trial_of(&study, planned, &answered)).collect();
+    let planned = app.store.trials(&session.session_id).await?;
+    let trials: Vec<Trial> = planned.iter().map(|planned| trial_of(&study, planned, &answered)).collect();
     let status = match (&session.completed_at, &session.consented_at) {
         (Some(_), _) => SessionStatus::Completed,
         (None, Some(_)) => SessionStatus::InProgress,
@@ -197,8 +238,8 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         study_id: session.study_id.clone(),
         status,
         consented: session.consented_at.is_some(),
-        more: false,
-        most_trials: trials.len(),
+        more: session.more,
+        most_trials: if session.more { study.most_trials() } else { trials.len() },
         next_trial: trials.iter().find(|trial| !trial.answered).map(|trial| trial.trial_index),
         trials,
         completion_code,
@@ -213,15 +254,15 @@ fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -
     let [width, height] = study.size;
     Trial {
         trial_index: trial.trial_index,
-        trial: TrialKind::TwoAlternative,
+        trial: trial.trial.rules().name(),
         block_index: trial.block_index,
         item_index: trial.item_index,
         kind: trial.kind,
-        shown: BTreeMap::from([
-            (Role::Left, stimulus(&planned.left_sha256)),
-            (Role::Right, stimulus(&planned.right_sha256)),
-        ]),
-        settings: None,
+        shown: planned.stimuli.iter().map(|(role, hashes)| (*role, stimulus(&hashes.sha256))).collect(),
+        settings: match &trial.trial {
+            TrialKind::TwoInterval(intervals) => Some(intervals.clone()),
+            TrialKind::TwoAlternative => None,
+        },
         width,
         height,
         answered: answered.contains(&trial.trial_index),

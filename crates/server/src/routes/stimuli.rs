@@ -38,7 +38,7 @@ pub(crate) async fn get_stimulus(
     headers: HeaderMap,
 ) -> Result<Response, Box<Problem>> {
     let missing = || Problem::not_found("stimulus");
-    let (info, bytes) = app.store.stimulus(&sha256).await?.ok_or_else(missing)?;
+    let (media_type, bytes) = app.store.stimulus(&sha256).await?.ok_or_else(missing)?;
     let etag = format!("\"{sha256}\"");
     let known = headers.get(header::IF_NONE_MATCH).and_then(|v| v.to_str().ok());
     let known =
@@ -48,5 +48,5 @@ pub(crate) async fn get_stimulus(
     if known {
         return Ok((StatusCode::NOT_MODIFIED, keep).into_response());
     }
-    Ok((keep, [(header::CONTENT_TYPE, info.media_type)], bytes).into_response())
+    Ok((keep, [(header::CONTENT_TYPE, media_type)], bytes).into_response())
 }

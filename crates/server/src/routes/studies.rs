@@ -1,14 +1,10 @@
 //! Studies: what anybody may know of one, and the researchers' lists of them and of their versions.
 
 use super::{Answered, Fresh};
-use crate::api::{
-    ListQuery, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, TrialKind, VersionList,
-    refusals,
-};
+use crate::api::{ListQuery, Progress, Study, StudyList, StudyStatus, StudySummary, VersionList, refusals};
 use crate::app::{App, LoadedStudy, Stimuli};
 use crate::extract::{Parameters, Query, Researcher};
 use axum::extract::State;
-use kelir_report::Participants;
 use kelir_store::StoreError;
 use serde::Deserialize;
 use std::sync::Arc;
@@ -43,7 +39,7 @@ pub(crate) async fn get_study(
         size: study.size,
         texts: study.texts.clone(),
         estimated_minutes: study.estimated_minutes,
-        trial_kinds: vec![TrialKind::TwoAlternative],
+        trial_kinds: study.trial_names(),
     }))
 }
 
@@ -70,6 +66,7 @@ pub(crate) async fn list_studies(
 
 async fn summary(app: &App, loaded: &LoadedStudy) -> Result<StudySummary, StoreError> {
     let study = &loaded.study;
+    let version = app.current(&study.id);
     let (status, progress, reason) = match loaded.stimuli() {
         Stimuli::Ready(_) => (StudyStatus::Ready, None, None),
         Stimuli::Failed(reason) => (StudyStatus::Failed, None, Some(reason)),
@@ -82,19 +79,19 @@ async fn summary(app: &App, loaded: &LoadedStudy) -> Result<StudySummary, StoreE
     Ok(StudySummary {
         id: study.id.clone(),
         title: study.title.clone(),
-        version: (status == StudyStatus::Ready).then(|| loaded.config_hash.clone()),
-        file_hash: loaded.config_hash.clone(),
+        participants: match &version {
+            Some(version) => app.store.version_counts(&study.id, loaded.idle()).await?.remove(version),
+            None => None,
+        }
+        .map(|gathered| crate::results::counted(gathered.participants))
+        .unwrap_or_default(),
+        version,
+        file_hash: loaded.file_hash.clone(),
         status,
         progress,
         reason,
-        most_trials: study.trial_count(),
-        participants: participants(app, loaded).await?,
+        most_trials: study.most_trials(),
     })
-}
-
-async fn participants(app: &App, loaded: &LoadedStudy) -> Result<Participants, StoreError> {
-    let counted = app.store.participants(&loaded.study.id, &loaded.config_hash, loaded.idle()).await?;
-    Ok(crate::results::counted(counted))
 }
 
 refusals!(Versions: Unauthorized, InvalidParameter, NotFound);
@@ -111,33 +108,13 @@ pub(crate) async fn list_versions(
     Parameters(StudyPath { study }): Parameters<StudyPath>,
     Query(query): Query<ListQuery>,
 ) -> Answered<VersionList> {
-    let loaded = app.study(&study)?;
-    let page = query.page(&[&loaded.config_hash])?;
-    let mut items = Vec::with_capacity(page.items.len());
-    for version in page.items {
-        items.push(described(&app, loaded, version).await?);
+    let current = app.current(&study);
+    let versions = crate::results::versions(&app.store, &study, current.as_deref()).await?;
+    if versions.is_empty() {
+        app.study(&study)?;
     }
-    Ok(Fresh(VersionList { items, next_cursor: page.next_cursor }))
-}
-
-/// What there is to say of a version.
-async fn described(app: &App, loaded: &LoadedStudy, version: &str) -> Result<StudyVersion, StoreError> {
-    let study = &loaded.study;
-    let stored = app.store.study_versions(&study.id).await?.into_iter();
-    let loaded_at =
-        stored.filter(|stored| stored.config_hash == version).map(|stored| stored.loaded_at).next();
-    let last_served_at = loaded_at.unwrap_or_default();
-    let answered = app.store.answer_times(&study.id, version).await?.map(|(first, _)| first);
-    let answers = loaded.answers(&app.store).await?;
-    Ok(StudyVersion {
-        version: version.to_owned(),
-        design_hash: study.config_hash(),
-        title: study.title.clone(),
-        is_current: version == loaded.config_hash,
-        first_served_at: answered.into_iter().chain([last_served_at.clone()]).min().unwrap_or_default(),
-        last_served_at,
-        participants: participants(app, loaded).await?,
-        answers: answers.len() as u64,
-        stimuli: app.store.study_stimuli(&study.id, version).await?.len(),
-    })
+    let keys: Vec<&str> = versions.iter().map(|version| version.version.as_str()).collect();
+    let page = query.page(&keys)?;
+    let items = versions.iter().filter(|version| page.items.contains(&version.version.as_str()));
+    Ok(Fresh(VersionList { items: items.cloned().collect(), next_cursor: page.next_cursor }))
 }

@@ -1,15 +1,17 @@
 //! What came of a version of a study: results, reports, tables.
 
 use super::{Answered, Fresh};
-use crate::api::{Codebook, Pooling, Problem, VersionRef, With, refusals};
-use crate::app::{App, LoadedStudy};
-use crate::export::{codebook, codebook_csv, responses_csv};
+use crate::api::{Codebook, Pooling, Problem, refusals, version_ref};
+use crate::app::App;
+use crate::export::{codebook_csv, responses_csv};
 use crate::extract::{Parameters, Query, Researcher};
 use crate::results::{StudyResults, pairs_csv, report_of, results_of};
+use crate::selection::Selection;
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use kelir_report::{Document, Figures, StudyReport, html, markdown};
+use kelir_study::columns::codebook;
 use serde::Deserialize;
 use std::sync::Arc;
 use utoipa::IntoParams;
@@ -27,18 +29,9 @@ refusals!(Chosen: Unauthorized, InvalidParameter, AmbiguousVersion, NotFound);
 
 type File = Result<Response, Box<Problem>>;
 
-/// The study of which this version and these others are asked for. Only the version that is served can be named, so that it is the
-/// one meant, and there are no others to pool.
-fn chosen<'a>(app: &'a App, path: &VersionPath, pooling: &Pooling) -> Result<&'a LoadedStudy, Box<Problem>> {
-    let loaded = app.study(&path.study)?;
-    let current = loaded.config_hash.as_str();
-    VersionRef::read("version", &path.version)?.among([current], current)?;
-    if let With::These(versions) = pooling.with()? {
-        for version in versions {
-            version.among([current], current)?;
-        }
-    }
-    Ok(loaded)
+/// The versions that are asked for.
+async fn chosen(app: &App, path: &VersionPath, pooling: &Pooling) -> Result<Selection, Box<Problem>> {
+    app.select(&path.study, &version_ref(&path.version)?, &pooling.with()?).await
 }
 
 /// The results in short: the paper's test for each block, the scale, the stimuli.
@@ -53,9 +46,9 @@ pub(crate) async fn get_results(
     Parameters(path): Parameters<VersionPath>,
     Query(pooling): Query<Pooling>,
 ) -> Answered<StudyResults> {
-    let loaded = chosen(&app, &path, &pooling)?;
-    let answers = loaded.answers(&app.store).await?;
-    Ok(Fresh(results_of(&app.store, &loaded.study, &answers).await?))
+    let selection = chosen(&app, &path, &pooling).await?;
+    let answers = app.answers(&selection).await?;
+    Ok(Fresh(results_of(&app.store, &selection, &answers).await?))
 }
 
 /// The full report: every number there is.
@@ -109,15 +102,14 @@ pub(crate) async fn get_report_md(
 
 /// The full report of a study. It resamples participants, which keeps a core busy: one at a time.
 async fn judged(app: &Arc<App>, path: VersionPath, pooling: Pooling) -> Result<StudyReport, Box<Problem>> {
-    chosen(app, &path, &pooling)?;
+    let selection = chosen(app, &path, &pooling).await?;
     let _permit = app.reporting.acquire().await.map_err(Problem::internal)?;
     let task = app.clone();
     // On a thread of its own kind: answering participants must not wait for it.
     let judged = tokio::task::spawn_blocking(move || {
         tokio::runtime::Handle::current().block_on(async {
-            let loaded = chosen(&task, &path, &pooling)?;
-            let answers = loaded.answers(&task.store).await?;
-            report_of(&task.store, &loaded.study, &answers).await.map_err(Box::<Problem>::from)
+            let answers = task.answers(&selection).await?;
+            report_of(&task.store, &selection, &answers).await.map_err(Box::<Problem>::from)
         })
     });
     judged.await.map_err(Problem::internal)?
@@ -135,8 +127,8 @@ pub(crate) async fn get_responses_csv(
     Parameters(path): Parameters<VersionPath>,
     Query(pooling): Query<Pooling>,
 ) -> File {
-    let loaded = chosen(&app, &path, &pooling)?;
-    let table = responses_csv(&app.store, &loaded.study).await?;
+    let selection = chosen(&app, &path, &pooling).await?;
+    let table = responses_csv(&app.store, &selection).await?;
     Ok(csv(&format!("{}-responses.csv", path.study), table))
 }
 
@@ -152,8 +144,8 @@ pub(crate) async fn get_pairs_csv(
     Parameters(path): Parameters<VersionPath>,
     Query(pooling): Query<Pooling>,
 ) -> File {
-    let loaded = chosen(&app, &path, &pooling)?;
-    let table = pairs_csv(&app.store, &loaded.study).await?;
+    let selection = chosen(&app, &path, &pooling).await?;
+    let table = pairs_csv(&app.store, &selection).await?;
     Ok(csv(&format!("{}-pairs.csv", path.study), table))
 }
 
@@ -169,7 +161,7 @@ pub(crate) async fn get_codebook_csv(
     Parameters(path): Parameters<VersionPath>,
     Query(pooling): Query<Pooling>,
 ) -> File {
-    chosen(&app, &path, &pooling)?;
+    chosen(&app, &path, &pooling).await?;
     Ok(csv(&format!("{}-codebook.csv", path.study), codebook_csv()))
 }
 
@@ -185,7 +177,7 @@ pub(crate) async fn get_codebook(
     Parameters(path): Parameters<VersionPath>,
     Query(pooling): Query<Pooling>,
 ) -> Answered<Codebook> {
-    chosen(&app, &path, &pooling)?;
+    chosen(&app, &path, &pooling).await?;
     Ok(Fresh(Codebook { columns: codebook() }))
 }
 

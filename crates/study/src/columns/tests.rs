@@ -82,7 +82,7 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
             payload["requested_ms"] = json!({ "mask": 250 });
             let checked = rules.check(&payload).map_or_else(|_| String::new(), |checked| checked.answer);
             let answer = if trial.trial.name() == "two-interval" {
-                json!({ "choice": roles[usize::from(!chose_first)].name(), "rt_ms": 812.5 }).to_string()
+                json!({ "choice": roles[usize::from(!chose_first)].as_str(), "rt_ms": 812.5 }).to_string()
             } else {
                 checked
             };
@@ -101,7 +101,7 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
             let cell = |name: &str| cells[rows.names().iter().position(|n| n == name).unwrap()].as_str();
             let chosen = roles[usize::from(!chose_first)];
             let condition = &*trial.shown[&chosen].condition;
-            assert_eq!((cell("response"), cell("chosen_condition")), (chosen.name(), condition));
+            assert_eq!((cell("response"), cell("chosen_condition")), (chosen.as_str(), condition));
             assert_eq!(cell("target_chosen"), if condition == "pa" { "1" } else { "0" });
             let catch = trial.block_id == "easy";
             assert_eq!(cell("is_catch"), if catch { "1" } else { "0" });
@@ -113,7 +113,7 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
             let intervals = trial.trial.name() == "two-interval";
             assert_eq!(cell("left_condition").is_empty(), intervals);
             assert_eq!(cell("shown_first_condition").is_empty(), !intervals);
-            assert_eq!(cell(&format!("shown_{}_sha256", roles[1].name())), "bb");
+            assert_eq!(cell(&format!("shown_{}_sha256", roles[1].as_str())), "bb");
             assert_eq!(cell("stimulus"), r#"["aa","bb"]"#);
             assert_eq!(
                 (cell("requested_ms_mask"), cell("status"), cell("chain_seq")),

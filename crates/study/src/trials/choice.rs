@@ -52,8 +52,8 @@ pub(super) fn observe<'a>(
     answer: &str,
 ) -> Result<Observation<'a>, String> {
     let answer: Answer<'_> = serde_json::from_str(answer).map_err(|error| error.to_string())?;
-    let chose_first = answer.choice == roles[0].name();
-    if !chose_first && answer.choice != roles[1].name() {
+    let chose_first = answer.choice == roles[0].as_str();
+    if !chose_first && answer.choice != roles[1].as_str() {
         return Err(format!("{:?} was chosen, which was not shown", answer.choice));
     }
     chose(roles, shown, chose_first, answer.rt_ms).ok_or_else(|| "a role has no stimulus".to_owned())

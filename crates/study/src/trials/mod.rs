@@ -9,12 +9,12 @@ mod tests;
 mod two_alternative;
 mod two_interval;
 
-pub use taken::{Input, Taken};
+pub use taken::{FrameLog, Input, Length, Taken};
 pub use two_alternative::{Arrangement, Side, TwoAlternativeAnswer};
 pub use two_interval::{Interval, Intervals, StepFrames, StepTimes, TwoIntervalAnswer};
 
 use crate::fields::Fields;
-use crate::schema::{FieldError, Record};
+use crate::schema::{FieldError, Record, worded};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
@@ -32,47 +32,34 @@ pub enum TrialKind {
     TwoInterval(Intervals),
 }
 
-/// The place that a stimulus has in its trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Role {
-    /// On the left, or above.
-    Left,
-    /// On the right, or below.
-    Right,
-    /// In the first interval.
-    First,
-    /// In the second interval.
-    Second,
+worded! {
+    /// The names of the kinds of trials.
+    pub enum TrialName {
+        /// two pictures at once, beside or below each other; which one?
+        TwoAlternative = "two-alternative",
+        /// one picture, then another; which one?
+        TwoInterval = "two-interval",
+    }
+}
+
+worded! {
+    /// The place that a stimulus has in its trial.
+    pub enum Role {
+        /// on the left, or above
+        Left = "left",
+        /// on the right, or below
+        Right = "right",
+        /// in the first interval
+        First = "first",
+        /// in the second interval
+        Second = "second",
+    }
 }
 
 impl Role {
-    /// Every role of any kind.
-    pub const ALL: [Role; 4] = [Role::Left, Role::Right, Role::First, Role::Second];
-
-    /// The name in data and addresses.
-    pub fn name(self) -> &'static str {
-        match self {
-            Role::Left => "left",
-            Role::Right => "right",
-            Role::First => "first",
-            Role::Second => "second",
-        }
-    }
-
-    /// What it means, as the end of a sentence.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            Role::Left => "on the left, or above",
-            Role::Right => "on the right, or below",
-            Role::First => "in the first interval",
-            Role::Second => "in the second interval",
-        }
-    }
-
     /// The role of this name.
     pub fn named(name: &str) -> Option<Role> {
-        Role::ALL.into_iter().find(|role| role.name() == name)
+        Role::ALL.iter().copied().find(|role| role.as_str() == name)
     }
 }
 
@@ -129,7 +116,7 @@ pub struct Choice<'a> {
 /// What every kind of trial knows.
 pub trait TrialRules: Sync {
     /// The kind's name in study files and data.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> TrialName;
 
     /// The roles that its stimuli have, in the order shown.
     fn roles(&self) -> &'static [Role];
@@ -178,12 +165,7 @@ impl TrialKind {
 
     /// The kind's name in study files and data.
     pub fn name(&self) -> &'static str {
-        self.rules().name()
-    }
-
-    /// The settings that its page is given; none where the kind has none.
-    pub fn settings(&self) -> Option<Value> {
-        serde_json::to_value(self).ok()?.get("trial_settings").cloned()
+        self.rules().name().as_str()
     }
 
     /// Reads a block's `trial` and `[blocks.trial_settings]`; `None` where something is wrong, which has been reported.
@@ -210,5 +192,5 @@ impl TrialKind {
 
 /// The rules of the kind of this name, as rows name it.
 pub fn rules(name: &str) -> Option<&'static dyn TrialRules> {
-    TrialKind::all().into_iter().map(|kind| kind.rules()).find(|rules| rules.name() == name)
+    TrialKind::all().into_iter().map(|kind| kind.rules()).find(|rules| rules.name().as_str() == name)
 }

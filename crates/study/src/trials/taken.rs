@@ -1,8 +1,9 @@
 //! What every page says of how a trial was taken, whatever its kind.
 
+use super::Role;
 use crate::schema::worded;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
 worded! {
@@ -18,6 +19,40 @@ worded! {
         Keyboard = "keyboard",
     }
 }
+
+/// How an animation was shown.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FrameLog {
+    /// Frames per second of the animation.
+    #[schema(minimum = 0, extensions(("x-unit" = json!("Hz"))))]
+    pub fps: Option<f64>,
+    /// Refresh rate that the animation was timed by.
+    #[schema(minimum = 0, extensions(("x-unit" = json!("Hz"))))]
+    pub refresh_hz: Option<f64>,
+    /// Refreshes that each frame is shown for.
+    #[schema(minimum = 0)]
+    pub hold: Option<f64>,
+    /// Refreshes from the first frame to the choice.
+    #[schema(minimum = 0)]
+    pub refreshes: Option<f64>,
+    /// Frames drawn.
+    #[schema(minimum = 0)]
+    pub shown: Option<f64>,
+    /// Frames passed over without being drawn.
+    #[schema(minimum = 0)]
+    pub skipped: Option<f64>,
+    /// Refreshes at which the browser did not let the page draw.
+    #[schema(minimum = 0)]
+    pub missed_refreshes: Option<f64>,
+    /// Longest time between two draws.
+    #[schema(minimum = 0, extensions(("x-unit" = json!("ms"))))]
+    pub longest_interval_ms: Option<f64>,
+}
+
+/// A length that is not negative.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(minimum = 0)]
+pub struct Length(pub f64);
 
 /// What every page says of how a trial was taken. A stimulus pixel is one of the picture, a device pixel one of the display, a CSS pixel one of the page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -59,7 +94,7 @@ pub struct Taken {
     /// Width and height of the window's inside, CSS px.
     #[serde(default)]
     #[schema(min_items = 2, max_items = 2)]
-    pub viewport: Option<Vec<f64>>,
+    pub viewport: Option<Vec<Length>>,
     /// Measured refresh rate of the display; empty where it could not be measured.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 10000, extensions(("x-unit" = json!("Hz"))))]
@@ -82,5 +117,5 @@ pub struct Taken {
     pub timestamp: Option<String>,
     /// Of animations: how each was played, by role.
     #[serde(default)]
-    pub frames: Option<Map<String, Value>>,
+    pub frames: Option<BTreeMap<Role, FrameLog>>,
 }

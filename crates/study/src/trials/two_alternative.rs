@@ -1,6 +1,6 @@
 //! Two pictures at once; which one?
 
-use super::{Checked, Observation, Role, Shown, Taken, TrialRules, choice};
+use super::{Checked, Observation, Role, Shown, Taken, TrialName, TrialRules, choice};
 use crate::schema::{FieldError, Record, worded};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -45,8 +45,8 @@ pub struct TwoAlternativeAnswer {
 pub(super) struct TwoAlternative;
 
 impl TrialRules for TwoAlternative {
-    fn name(&self) -> &'static str {
-        "two-alternative"
+    fn name(&self) -> TrialName {
+        TrialName::TwoAlternative
     }
 
     fn roles(&self) -> &'static [Role] {

@@ -1,6 +1,6 @@
 //! One picture, then another; which one?
 
-use super::{Checked, Observation, Role, Shown, Taken, TrialRules, choice};
+use super::{Checked, Observation, Role, Shown, Taken, TrialName, TrialRules, choice};
 use crate::fields::{Fields, number};
 use crate::schema::{FieldError, Record, worded};
 use serde::{Deserialize, Serialize};
@@ -127,8 +127,8 @@ pub(super) fn read(block: &mut Fields<'_>) -> Option<Intervals> {
 pub(super) struct TwoInterval;
 
 impl TrialRules for TwoInterval {
-    fn name(&self) -> &'static str {
-        "two-interval"
+    fn name(&self) -> TrialName {
+        TrialName::TwoInterval
     }
 
     fn roles(&self) -> &'static [Role] {

@@ -3,8 +3,8 @@ import { createHash } from "node:crypto";
 import { crc32, deflateSync } from "node:zlib";
 
 /** An 8-bit RGB PNG of `rgb` (row by row). */
-export function png(width, height, rgb) {
-  const chunk = (type, data) => {
+export function png(width: number, height: number, rgb: Uint8Array): Buffer {
+  const chunk = (type: string, data: Buffer) => {
     const body = Buffer.concat([Buffer.from(type, "latin1"), data]);
     const out = Buffer.alloc(body.length + 8);
     out.writeUInt32BE(data.length, 0);
@@ -22,12 +22,21 @@ export function png(width, height, rgb) {
   return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(raw, { level: 1 })), chunk("IEND", Buffer.alloc(0))]);
 }
 
+export interface Look {
+  width?: number;
+  height?: number;
+  turn?: number;
+  soft?: number;
+  noise?: number;
+  seed?: number;
+}
+
 /** A leaf-shaped puppet with a row of holes, turned by `turn` radians, with edges `soft` pixels wide. */
-export function shadow({ width = 592, height = 333, turn = 0, soft = 6, noise = 0, seed = 1 } = {}) {
+export function shadow({ width = 592, height = 333, turn = 0, soft = 6, noise = 0, seed = 1 }: Look = {}): Buffer {
   const rgb = new Uint8Array(width * height * 3);
   let state = seed >>> 0 || 1;
   const random = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
-  const step = (d) => 1 / (1 + Math.exp(-d / (soft / 3)));
+  const step = (d: number) => 1 / (1 + Math.exp(-d / (soft / 3)));
   for (let y = 0; y < height; y++) {
     for (let x = 0; x < width; x++) {
       const dx = (x - width / 2) * Math.cos(turn) + (y - height * 0.54) * Math.sin(turn);
@@ -45,4 +54,4 @@ export function shadow({ width = 592, height = 333, turn = 0, soft = 6, noise = 
   return png(width, height, rgb);
 }
 
-export const sha256 = (bytes) => createHash("sha256").update(bytes).digest("hex");
+export const sha256 = (bytes: Uint8Array): string => createHash("sha256").update(bytes).digest("hex");

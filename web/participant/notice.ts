@@ -1,0 +1,39 @@
+/** One sentence about the line at the edge of the screen, or none. */
+import { backoffMs, pause } from "../shared/backoff.ts";
+import { h } from "../shared/dom.ts";
+import { isTemporary, Refused } from "../shared/http.ts";
+
+export const notice = h("p", { id: "notice", role: "status" });
+
+const troubles = new Map<"answers" | "page" | "pictures", string>();
+
+/** Says a sentence about one of three things, or that there is nothing more to say of it. */
+export function say(about: "answers" | "page" | "pictures", sentence: string | null): void {
+  if (sentence === null) troubles.delete(about);
+  else troubles.set(about, sentence);
+  const text = [...troubles.values()][0] ?? "";
+  if (notice.textContent !== text) notice.textContent = text;
+}
+
+/** Tries until the server answers yes or a final no; says so when it takes longer. */
+export async function persist<T>(ask: () => Promise<T>): Promise<T> {
+  for (let failures = 1; ; failures++) {
+    try {
+      const answer = await ask();
+      say("page", null);
+      return answer;
+    } catch (error) {
+      if (!isTemporary(error)) throw error;
+      say("page", hindrance(error));
+      const asked = error instanceof Refused ? (error.retryAfterMs ?? 0) : 0;
+      await pause(Math.max(asked, backoffMs(failures)));
+    }
+  }
+}
+
+/** What keeps us waiting, in words that are true of it. */
+function hindrance(error: unknown): string {
+  if (!(error instanceof Refused)) return "No connection. Nothing is lost: this page goes on by itself when it is back.";
+  if (error.code === "not_ready" || error.code === "stimuli_failed") return error.message;
+  return "The server is busy. Nothing is lost: this page goes on by itself in a moment.";
+}

@@ -1,0 +1,92 @@
+/** What a kind of trial is to the rest of the page: one folder whose `index.ts` exports one `TrialModule`. */
+import { type JsPsych, type JsPsychPlugin, ParameterType, type PluginInfo } from "jspsych";
+import type { Study, Trial } from "../api.ts";
+import type { Pictures } from "../stimuli.ts";
+
+export interface TrialModule {
+  /** The jsPsych plugin that shows it; its name is the kind's. */
+  readonly plugin: (new (jsPsych: JsPsych) => JsPsychPlugin<never>) & { readonly info: PluginInfo };
+  /** The names of its stimuli in a trial's `shown`. */
+  readonly roles: readonly string[];
+  /** What the page of instructions shows of it. */
+  readonly legend: Legend;
+  /** The plugin's parameters for one trial. */
+  parameters(given: Given): Record<string, unknown>;
+  /** Why a display that redraws every `periodMs` (null: not known) can't show the trial as it is asked for; null where it can. */
+  refusal?(trial: Trial, periodMs: number | null): string | null;
+}
+
+export interface Legend {
+  /** Said only where a study has several kinds of trial. */
+  title: string;
+  /** The keys of each answer, in the order in which they lie on the keyboard. */
+  answers: ReadonlyArray<{ keys: readonly string[]; label: string }>;
+}
+
+/** What the page gives to every kind of trial. */
+export interface Given {
+  study: Study;
+  trial: Trial;
+  /** Where the trial stands, as "7 of 25". */
+  position: string;
+  /** The stimuli by role: fetched, verified and decoded. */
+  load(): Promise<Pictures>;
+  /** The display's refresh period in ms; null where it could not be measured. */
+  refreshPeriod(): Promise<number | null>;
+  /** The pictures have been on the screen: the next trial's may be fetched, and decoded too unless that would disturb these. */
+  onOnset(decode: boolean): void;
+  /** The answer is given: from now on it must not be lost. */
+  onChoice(data: Record<string, unknown>): void;
+}
+
+/** Parameters that every kind's plugin has. */
+export const commonParameters = <const>{
+  /** The question above the pictures. */
+  question: { type: ParameterType.STRING, default: undefined },
+  /** Where the trial stands, as "7 of 25". */
+  position: { type: ParameterType.STRING, default: "" },
+  /** Stimulus pixels; all pictures of a trial have this size. */
+  width: { type: ParameterType.INT, default: undefined },
+  height: { type: ParameterType.INT, default: undefined },
+  /** Gives a promise of the fetched, verified and decoded pictures by role. */
+  load: { type: ParameterType.FUNCTION, default: undefined },
+  /** Gives a promise of the display's refresh period in ms, or of null where it could not be measured. */
+  refresh_period: { type: ParameterType.FUNCTION, default: undefined },
+  /** Called once the pictures have been on the screen, with whether the next ones may be decoded now: the time to preload them. */
+  on_onset: { type: ParameterType.FUNCTION, default: () => {} },
+  /** Called with the trial's data at the choice, before its outline is shown: from then on it must not be lost. */
+  on_choice: { type: ParameterType.FUNCTION, default: () => {} },
+  /** How long the choice keeps its outline, ms. */
+  feedback_ms: { type: ParameterType.INT, default: 150 },
+};
+
+/** Data that every kind's plugin gives. */
+export const commonData = <const>{
+  /** From the first painted frame that could be answered to the choice, ms. */
+  rt: { type: ParameterType.FLOAT },
+  /** `performance.now()` of that frame, ms. */
+  onset: { type: ParameterType.FLOAT },
+  /** "mouse", "touch", "pen" or "keyboard". */
+  input: { type: ParameterType.STRING },
+  /** Device pixels per stimulus pixel, pinch zoom included: 1 is native. */
+  scale: { type: ParameterType.FLOAT },
+  /** Width at which a stimulus stood, CSS px, pinch zoom included. */
+  css_width_px: { type: ParameterType.FLOAT },
+  device_pixel_ratio: { type: ParameterType.FLOAT },
+  /** CSS pixels, width and height. */
+  viewport: { type: ParameterType.INT, array: true },
+  /** Measured, Hz; null where it could not be. */
+  refresh_hz: { type: ParameterType.FLOAT },
+  /** Time that the page was hidden between onset and choice, ms. */
+  hidden_ms: { type: ParameterType.FLOAT },
+  /** The shortest time that any of the trial's stimuli was visible before the answer, ms. */
+  min_visible_ms: { type: ParameterType.FLOAT },
+  /** Of animations only: how each was played, by role. */
+  frames: { type: ParameterType.OBJECT },
+};
+
+/** Values of the common parameters. */
+export const common = ({ study, trial, position, load, refreshPeriod, onOnset, onChoice }: Given) => ({
+  ...{ question: study.question, position, width: trial.width, height: trial.height },
+  ...{ load, refresh_period: refreshPeriod, on_onset: onOnset, on_choice: onChoice },
+});

@@ -1,0 +1,94 @@
+/** jsPsych plugin: two pictures of equal size, stills or animations; which one? By mouse, touch, pen or the arrow keys. */
+import { type JsPsych, type JsPsychPlugin, ParameterType, type TrialType } from "jspsych";
+import type { TwoAlternativeAnswer } from "../../api.ts";
+import { rounded } from "../../clock.ts";
+import type { Pictures } from "../../stimuli.ts";
+import { commonData, commonParameters } from "../module.ts";
+import { FALLBACK_PERIOD_MS } from "../shared/player.ts";
+import { type Pair, Stage } from "./stage.ts";
+
+const info = <const>{
+  name: "two-alternative",
+  version: "1.1.0",
+  parameters: {
+    ...commonParameters,
+    /** Hashes of the two stimuli. */
+    left: { type: ParameterType.STRING, default: undefined },
+    right: { type: ParameterType.STRING, default: undefined },
+  },
+  data: {
+    ...commonData,
+    /** "left" or "right". */
+    choice: { type: ParameterType.STRING },
+    /** "side" or "stack". */
+    arrangement: { type: ParameterType.STRING },
+  },
+};
+
+export type Info = typeof info;
+
+export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
+  static info = info;
+  readonly #jsPsych: JsPsych;
+
+  constructor(jsPsych: JsPsych) {
+    this.#jsPsych = jsPsych;
+  }
+
+  async trial(display: HTMLElement, trial: TrialType<Info>, onLoad?: () => void): Promise<Record<string, unknown>> {
+    const [pictures, periodMs] = await Promise.all([trial.load() as Promise<Pictures>, trial.refresh_period() as Promise<number | null>]);
+    const pair = pictures as Pair;
+    const stage = new Stage(display, trial, pair);
+    onLoad?.();
+    const play = await stage.show(periodMs ?? FALLBACK_PERIOD_MS);
+    trial.on_onset?.(pair.left.kind === "still" && pair.right.kind === "still");
+
+    const { role: side, input, at } = await stage.choice();
+    const rt = at - play.onset;
+    const hidden = stage.hiddenMs();
+    const { scale, css_width_px, ...where } = stage.shown();
+    const data = {
+      choice: side,
+      rt: rounded(rt),
+      onset: rounded(play.onset),
+      input,
+      scale,
+      css_width_px,
+      ...where,
+      refresh_hz: periodMs === null ? null : rounded(1000 / periodMs),
+      hidden_ms: rounded(hidden),
+      min_visible_ms: rounded(Math.max(0, rt - hidden)),
+      ...(play.log() ?? {}),
+    } satisfies TwoAlternativeAnswer;
+    trial.on_choice?.(data);
+    stage.mark(side);
+    await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));
+    play.stop();
+    stage.clear();
+    return data;
+  }
+
+  /** `data-only` answers at random at once; `visual` shows the pair and clicks. */
+  simulate(trial: TrialType<Info>, mode: "data-only" | "visual", options: { data?: object }, onLoad?: () => void): void {
+    const made = {
+      choice: Math.random() < 0.5 ? "left" : "right",
+      rt: this.#jsPsych.randomization.sampleExGaussian(600, 100, 1 / 300, true),
+      ...options.data,
+    };
+    if (mode === "data-only") {
+      onLoad?.();
+      const where = { scale: 1, css_width_px: (trial.width ?? 0) / devicePixelRatio, arrangement: "side", device_pixel_ratio: devicePixelRatio, viewport: [innerWidth, innerHeight] };
+      const data = { onset: performance.now(), input: "mouse", ...where, refresh_hz: null, hidden_ms: 0, min_visible_ms: made.rt, ...made };
+      trial.on_choice?.(data);
+      this.#jsPsych.finishTrial(data);
+      return;
+    }
+    const display = this.#jsPsych.getDisplayElement();
+    const click = () => {
+      onLoad?.();
+      const target = display.querySelector<HTMLElement>(`[data-testid="choice-${made.choice}"]`);
+      if (target !== null) this.#jsPsych.pluginAPI.clickTarget(target, made.rt);
+    };
+    void this.trial(display, trial, click).then((data) => this.#jsPsych.finishTrial(data));
+  }
+}

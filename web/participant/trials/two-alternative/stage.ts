@@ -1,0 +1,125 @@
+/** A pair on the screen, until it is answered. */
+import type { TrialType } from "jspsych";
+import { h } from "../../../shared/dom.ts";
+import type { FrameLog } from "../../clock.ts";
+import { fitPair, type Layout } from "../../layout.ts";
+import type { Picture } from "../../stimuli.ts";
+import { type Choice, firstChoice } from "../shared/choice.ts";
+import { hiddenTime } from "../shared/hidden.ts";
+import { roomWithin, shownAt, toWholePixels } from "../shared/place.ts";
+import { Player } from "../shared/player.ts";
+import type { Info } from "./plugin.ts";
+
+export type Side = "left" | "right";
+export type Pair = Record<Side, Picture>;
+
+const SIDES: readonly Side[] = ["left", "right"];
+
+export class Stage {
+  readonly #trial: TrialType<Info>;
+  readonly #pair: Pair;
+  readonly #root: HTMLElement;
+  readonly #heading: HTMLHeadingElement;
+  readonly #footer: HTMLElement;
+  readonly #box: HTMLElement;
+  readonly #buttons: Record<Side, HTMLButtonElement>;
+  readonly #paint: Record<Side, CanvasRenderingContext2D | null>;
+  readonly #listening = new AbortController();
+  #layout: Layout;
+  /** How long the page has been hidden since the pair was shown, ms. */
+  hiddenMs = () => 0;
+
+  constructor(display: HTMLElement, trial: TrialType<Info>, pair: Pair) {
+    this.#trial = trial;
+    this.#pair = pair;
+    const surface = (picture: Picture) => {
+      if (picture.kind === "still") return { element: picture.image, context: null };
+      const canvas = h("canvas", { width: trial.width, height: trial.height });
+      return { element: canvas, context: canvas.getContext("2d", { alpha: false }) };
+    };
+    const [left, right] = [surface(pair.left), surface(pair.right)];
+    const button = (side: Side, label: string, picture: HTMLElement) =>
+      h("button", { type: "button", class: "picture", "aria-label": label, "data-testid": `choice-${side}`, "data-sha256": trial[side] }, picture);
+    this.#buttons = { left: button("left", "Left image", left.element), right: button("right", "Right image", right.element) };
+    this.#paint = { left: left.context, right: right.context };
+    this.#heading = h("h1", { tabindex: -1 }, trial.question);
+    this.#footer = h("p", { class: "position", "aria-live": "polite" });
+    this.#box = h("div", { class: "pair", role: "group", "aria-label": trial.question }, this.#buttons.left, this.#buttons.right);
+    this.#root = h("section", { class: "trial" }, this.#heading, this.#box, this.#footer);
+    display.replaceChildren(this.#root);
+    this.#layout = this.#fit();
+    addEventListener("resize", () => (this.#layout = this.#fit()), { signal: this.#listening.signal });
+  }
+
+  /** Paints the pair and resolves at the frame after: the first at which it has been on the screen. */
+  async show(periodMs: number): Promise<{ onset: number; log(): { frames: Partial<Record<Side, FrameLog>> } | null; stop(): void }> {
+    const players = SIDES.flatMap((side) => {
+      const [picture, context] = [this.#pair[side], this.#paint[side]];
+      return picture.kind === "still" || context === null ? [] : [{ side, player: new Player(picture, context, periodMs) }];
+    });
+    const draw = (now: number) => players.forEach(({ player }) => player.draw(now));
+    const decoded = SIDES.flatMap((side) => {
+      const picture = this.#pair[side];
+      return picture.kind === "still" ? [picture.image.decode()] : [];
+    });
+    await Promise.all(decoded); // a decoded picture may have been dropped since; this is at once otherwise
+    let running = true;
+    const onset = await new Promise<number>((resolve) => {
+      requestAnimationFrame((now) => {
+        draw(now);
+        this.#box.classList.add("shown");
+        this.#footer.textContent = this.#trial.position ?? "";
+        this.#heading.focus({ preventScroll: true });
+        requestAnimationFrame((painted) => {
+          this.hiddenMs = hiddenTime(this.#listening.signal);
+          resolve(painted);
+          if (players.length === 0) return;
+          const loop = (at: number) => {
+            if (!running) return;
+            draw(at);
+            requestAnimationFrame(loop);
+          };
+          loop(painted);
+        });
+      });
+    });
+    const log = () => (players.length === 0 ? null : { frames: Object.fromEntries(players.map(({ side, player }) => [side, player.log()])) });
+    return { onset, log, stop: () => (running = false) };
+  }
+
+  /** The first choice after onset. */
+  choice(): Promise<Choice<Side>> {
+    return firstChoice<Side>({ root: this.#root, buttons: this.#buttons, keys: { ArrowLeft: "left", ArrowRight: "right" }, signal: this.#listening.signal });
+  }
+
+  /** How the pair was shown. */
+  shown() {
+    const { scale, css_width_px, ...display } = shownAt(this.#layout);
+    return { scale, css_width_px, arrangement: this.#layout.arrangement, ...display };
+  }
+
+  /** Outlines the choice and takes no other. */
+  mark(side: Side): void {
+    this.#listening.abort();
+    this.#buttons[side].classList.add("chosen");
+  }
+
+  clear(): void {
+    this.#root.remove();
+  }
+
+  /** Sizes and places the pictures in whole device pixels. */
+  #fit(): Layout {
+    const { width, height } = this.#trial;
+    const layout = fitPair({ width, height, ...roomWithin(this.#root, this.#heading, this.#footer) });
+    this.#box.classList.toggle("stack", layout.arrangement === "stack");
+    this.#box.style.gap = `${layout.gap}px`;
+    for (const button of Object.values(this.#buttons)) {
+      const picture = button.firstElementChild as HTMLElement;
+      picture.style.width = `${layout.width}px`;
+      picture.style.height = `${layout.height}px`;
+    }
+    toWholePixels(this.#box, this.#buttons.left);
+    return layout;
+  }
+}

@@ -1,0 +1,25 @@
+/** Two pictures in one place, one after the other: which one? */
+import { common, type TrialModule } from "../module.ts";
+import plugin from "./plugin.ts";
+import { refusal } from "./sequence.ts";
+
+export default {
+  plugin,
+  roles: ["first", "second"],
+  legend: {
+    title: "Two pictures, one after the other",
+    answers: [
+      { keys: ["←", "1"], label: "first" },
+      { keys: ["→", "2"], label: "second" },
+    ],
+  },
+  parameters: (given) => ({
+    ...common(given),
+    first: given.trial.shown.first?.sha256,
+    second: given.trial.shown.second?.sha256,
+    settings: given.trial.settings,
+    surround: given.study.surround,
+    trial_index: given.trial.trial_index,
+  }),
+  refusal: ({ settings }, periodMs) => refusal(settings, periodMs),
+} satisfies TrialModule;

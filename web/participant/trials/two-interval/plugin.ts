@@ -1,0 +1,118 @@
+/** jsPsych plugin: two pictures in one place, one after the other and each for its time; which one? */
+import { type JsPsych, type JsPsychPlugin, ParameterType, type TrialType } from "jspsych";
+import type { TwoIntervalAnswer } from "../../api.ts";
+import { rounded } from "../../clock.ts";
+import type { Pictures } from "../../stimuli.ts";
+import { commonData, commonParameters } from "../module.ts";
+import { FALLBACK_PERIOD_MS } from "../shared/player.ts";
+import { inFrames, type PerStep, requested, STEPS } from "./sequence.ts";
+import { type Intervals, Stage } from "./stage.ts";
+
+const info = <const>{
+  name: "two-interval",
+  version: "1.0.0",
+  parameters: {
+    ...commonParameters,
+    /** Hashes of the two stimuli. */
+    first: { type: ParameterType.STRING, default: undefined },
+    second: { type: ParameterType.STRING, default: undefined },
+    /** `fixation_ms`, `first_ms`, `mask_ms` and `second_ms`; no fixation and no mask where they are 0. */
+    settings: { type: ParameterType.OBJECT, default: undefined },
+    /** Linear luminance of the grey around the pictures, 0 to 1. */
+    surround: { type: ParameterType.FLOAT, default: undefined },
+    /** With the hashes, what the mask is made from. */
+    trial_index: { type: ParameterType.INT, default: 0 },
+  },
+  data: {
+    ...commonData,
+    /** "first" or "second". */
+    choice: { type: ParameterType.STRING },
+    /** Durations by step, ms: as asked for. */
+    requested_ms: { type: ParameterType.OBJECT },
+    /** Durations by step as shown, in frames of the measured refresh. */
+    shown_frames: { type: ParameterType.OBJECT },
+    /** Durations by step as shown, between frame times, ms. */
+    shown_ms: { type: ParameterType.OBJECT },
+    /** How often the trial began again, because the page was hidden before the response screen. */
+    restarts: { type: ParameterType.INT },
+  },
+};
+
+export type Info = typeof info;
+
+export default class TwoIntervalPlugin implements JsPsychPlugin<Info> {
+  static info = info;
+  readonly #jsPsych: JsPsych;
+
+  constructor(jsPsych: JsPsych) {
+    this.#jsPsych = jsPsych;
+  }
+
+  async trial(display: HTMLElement, trial: TrialType<Info>, onLoad?: () => void): Promise<Record<string, unknown>> {
+    const [pictures, measured] = await Promise.all([trial.load() as Promise<Pictures>, trial.refresh_period() as Promise<number | null>]);
+    const periodMs = measured ?? FALLBACK_PERIOD_MS;
+    const requested_ms = requested(trial.settings);
+    const stage = new Stage(display, trial, pictures as Intervals);
+    await stage.prepare();
+    onLoad?.();
+    const { onset, shown, frames, restarts } = await stage.show(inFrames(requested_ms, periodMs), periodMs);
+    trial.on_onset?.(true);
+
+    const { role, input, at } = await stage.choice();
+    const data = {
+      choice: role,
+      rt: rounded(at - onset),
+      onset: rounded(onset),
+      input,
+      ...stage.shown(),
+      refresh_hz: measured === null ? null : rounded(1000 / measured),
+      hidden_ms: rounded(stage.hiddenMs()),
+      min_visible_ms: Math.min(shown.ms.first, shown.ms.second),
+      requested_ms,
+      shown_frames: shown.frames,
+      shown_ms: shown.ms,
+      restarts,
+      ...(frames === null ? {} : { frames }),
+    } satisfies TwoIntervalAnswer;
+    trial.on_choice?.(data);
+    stage.mark(role);
+    await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));
+    stage.clear();
+    return data;
+  }
+
+  /** `data-only` answers at random at once; `visual` shows the sequence and clicks. */
+  simulate(trial: TrialType<Info>, mode: "data-only" | "visual", options: { data?: object }, onLoad?: () => void): void {
+    const made = {
+      choice: Math.random() < 0.5 ? "first" : "second",
+      rt: this.#jsPsych.randomization.sampleExGaussian(600, 100, 1 / 300, true),
+      ...options.data,
+    };
+    if (mode === "data-only") {
+      onLoad?.();
+      const data = { ...this.#planned(trial), ...made };
+      trial.on_choice?.(data);
+      this.#jsPsych.finishTrial(data);
+      return;
+    }
+    const display = this.#jsPsych.getDisplayElement();
+    const click = (decode: boolean) => {
+      trial.on_onset?.(decode);
+      const target = display.querySelector<HTMLElement>(`[data-testid="choice-${made.choice}"]`);
+      if (target !== null) this.#jsPsych.pluginAPI.clickTarget(target, made.rt);
+    };
+    void this.trial(display, { ...trial, on_onset: click }, onLoad).then((data) => this.#jsPsych.finishTrial(data));
+  }
+
+  /** The data of a trial that goes as it was asked for, on a display that nobody measured. */
+  #planned(trial: TrialType<Info>): Record<string, unknown> {
+    const requested_ms = requested(trial.settings);
+    const shown_frames = inFrames(requested_ms, FALLBACK_PERIOD_MS);
+    const shown_ms = Object.fromEntries(STEPS.map((step) => [step, rounded(shown_frames[step] * FALLBACK_PERIOD_MS)])) as PerStep;
+    return {
+      ...{ onset: performance.now(), input: "mouse", scale: 1, css_width_px: (trial.width ?? 0) / devicePixelRatio },
+      ...{ device_pixel_ratio: devicePixelRatio, viewport: [innerWidth, innerHeight], refresh_hz: null, hidden_ms: 0 },
+      ...{ min_visible_ms: Math.min(shown_ms.first, shown_ms.second), requested_ms, shown_frames, shown_ms, restarts: 0 },
+    };
+  }
+}

@@ -1,0 +1,198 @@
+/** Two pictures on the screen, one after the other, then the question's two buttons in their place. */
+import type { TrialType } from "jspsych";
+import { h } from "../../../shared/dom.ts";
+import type { FrameLog } from "../../clock.ts";
+import { fitOne, inkOn, type Size, srgbCode } from "../../layout.ts";
+import type { Picture } from "../../stimuli.ts";
+import { type Choice, firstChoice } from "../shared/choice.ts";
+import { hiddenTime, visible } from "../shared/hidden.ts";
+import { roomWithin, shownAt, toWholePixels } from "../shared/place.ts";
+import { Player } from "../shared/player.ts";
+import { mask, seedOf } from "./mask.ts";
+import type { Info } from "./plugin.ts";
+import { type PerStep, SequenceClock, type Step } from "./sequence.ts";
+
+export type Interval = "first" | "second";
+export type Intervals = Record<Interval, Picture>;
+
+const INTERVALS: readonly Interval[] = ["first", "second"];
+
+/** What is said to those who hear the page. */
+const SPOKEN: Record<Step | "response", string> = { fixation: "", first: "First image", mask: "", second: "Second image", response: "Please choose: first or second" };
+
+/** A sequence that was shown to its end. */
+export interface Shown {
+  /** First painted frame of the response screen. */
+  onset: number;
+  shown: { frames: PerStep; ms: PerStep };
+  frames: Partial<Record<Interval, FrameLog>> | null;
+  /** How often the page was hidden during an interval, so that all began again. */
+  restarts: number;
+}
+
+export class Stage {
+  readonly #trial: TrialType<Info>;
+  readonly #pictures: Intervals;
+  readonly #root: HTMLElement;
+  readonly #heading: HTMLHeadingElement;
+  readonly #footer: HTMLElement;
+  readonly #box: HTMLElement;
+  readonly #canvas: HTMLCanvasElement;
+  readonly #context: CanvasRenderingContext2D;
+  readonly #spoken: HTMLElement;
+  readonly #buttons: Record<Interval, HTMLButtonElement>;
+  readonly #listening = new AbortController();
+  /** All that is painted but animations, decoded: nothing has to be made while time is counted. */
+  readonly #bitmaps: Partial<Record<Step, ImageBitmap>> = {};
+  #size: Size;
+  /** How long the page has been hidden since the response screen was shown, ms. */
+  hiddenMs = () => 0;
+
+  constructor(display: HTMLElement, trial: TrialType<Info>, pictures: Intervals) {
+    this.#trial = trial;
+    this.#pictures = pictures;
+    this.#canvas = h("canvas", { width: trial.width, height: trial.height, "aria-hidden": "true" });
+    this.#context = this.#canvas.getContext("2d", { alpha: false }) as CanvasRenderingContext2D;
+    const button = (interval: Interval, label: string) =>
+      h("button", { type: "button", class: "action", "data-testid": `choice-${interval}`, "data-sha256": trial[interval] }, label);
+    this.#buttons = { first: button("first", "First"), second: button("second", "Second") };
+    this.#heading = h("h1", { tabindex: -1 }, trial.question);
+    this.#footer = h("p", { class: "position", "aria-live": "polite" });
+    this.#spoken = h("p", { class: "spoken", role: "status" });
+    const answers = h("div", { class: "answers", role: "group", "aria-label": trial.question }, this.#buttons.first, this.#buttons.second);
+    this.#box = h("div", { class: "intervals" }, this.#canvas, answers, this.#spoken);
+    this.#root = h("section", { class: "trial" }, this.#heading, this.#box, this.#footer);
+    display.replaceChildren(this.#root);
+    this.#size = this.#fit();
+    addEventListener("resize", () => (this.#size = this.#fit()), { signal: this.#listening.signal });
+  }
+
+  /** Decodes and draws beforehand. */
+  async prepare(): Promise<void> {
+    const { width = 0, height = 0, surround = 0, trial_index = 0 } = this.#trial;
+    for (const interval of INTERVALS) {
+      const picture = this.#pictures[interval];
+      if (picture.kind === "still") this.#bitmaps[interval] = await createImageBitmap(picture.image);
+    }
+    const seed = seedOf(INTERVALS.map((interval) => this.#trial[interval] ?? ""), trial_index);
+    this.#bitmaps.mask = await createImageBitmap(new ImageData(mask({ width, height, surround, seed }), width, height));
+    // A bitmap's first drawing may have to carry it to the graphics card.
+    const animated = INTERVALS.flatMap((interval) => {
+      const picture = this.#pictures[interval];
+      return picture.kind === "animation" ? picture.frames : [];
+    });
+    for (const bitmap of [...Object.values(this.#bitmaps), ...animated]) this.#context.drawImage(bitmap, 0, 0);
+    this.#blank();
+  }
+
+  /** Shows the steps, from the beginning again whenever the page is hidden before the response screen; resolves when that is painted. */
+  async show(plan: PerStep, periodMs: number): Promise<Shown> {
+    this.#footer.textContent = this.#trial.position ?? "";
+    this.#heading.focus({ preventScroll: true });
+    for (let restarts = 0; ; restarts += 1) {
+      await visible();
+      const seen = await this.#sequence(plan, periodMs);
+      if (seen === null) continue;
+      this.hiddenMs = hiddenTime(this.#listening.signal);
+      return { ...seen, restarts };
+    }
+  }
+
+  /** The first choice after onset. */
+  choice(): Promise<Choice<Interval>> {
+    const keys = { ArrowLeft: "first", "1": "first", ArrowRight: "second", "2": "second" } as const;
+    return firstChoice<Interval>({ root: this.#root, buttons: this.#buttons, keys, signal: this.#listening.signal });
+  }
+
+  /** How the pictures were shown. */
+  shown() {
+    return shownAt(this.#size);
+  }
+
+  /** Outlines the choice and takes no other. */
+  mark(interval: Interval): void {
+    this.#listening.abort();
+    this.#buttons[interval].classList.add("chosen");
+  }
+
+  clear(): void {
+    this.#root.remove();
+    for (const bitmap of Object.values(this.#bitmaps)) bitmap.close();
+  }
+
+  /** One pass; null when the page was hidden before it was over. */
+  #sequence(plan: PerStep, periodMs: number): Promise<Omit<Shown, "restarts"> | null> {
+    const clock = new SequenceClock(plan, periodMs);
+    const players: Partial<Record<Step, Player>> = {};
+    for (const interval of INTERVALS) {
+      const picture = this.#pictures[interval];
+      if (picture.kind === "animation") players[interval] = new Player(picture, this.#context, periodMs);
+    }
+    const log = () => {
+      const played = INTERVALS.flatMap((interval) => (players[interval] === undefined ? [] : [[interval, players[interval].log()] as const]));
+      return played.length === 0 ? null : Object.fromEntries(played);
+    };
+    return new Promise((resolve) => {
+      const over = new AbortController();
+      const end = (seen: Omit<Shown, "restarts"> | null) => {
+        over.abort();
+        if (seen === null) this.#blank();
+        resolve(seen);
+      };
+      document.addEventListener("visibilitychange", () => end(null), { signal: over.signal });
+      let on: Step | null | undefined;
+      const frame = (now: number) => {
+        if (over.signal.aborted) return;
+        const step = clock.tick(now);
+        if (step !== on) this.#paint(step);
+        on = step;
+        if (step !== null) players[step]?.draw(now);
+        requestAnimationFrame(step === null ? response : frame);
+      };
+      const response = (onset: number) => {
+        if (!over.signal.aborted) end({ onset, shown: clock.shown(), frames: log() });
+      };
+      requestAnimationFrame(frame);
+    });
+  }
+
+  /** Puts a step on the screen, or the response's buttons. */
+  #paint(step: Step | null): void {
+    this.#box.classList.toggle("answering", step === null);
+    this.#spoken.textContent = SPOKEN[step ?? "response"];
+    const bitmap = step === null ? undefined : this.#bitmaps[step];
+    if (bitmap !== undefined) this.#context.drawImage(bitmap, 0, 0);
+    else if (step === "fixation") this.#cross();
+  }
+
+  /** The surround's grey, which can't be told from the page. */
+  #blank(): void {
+    const code = srgbCode(this.#trial.surround ?? 0);
+    this.#context.fillStyle = `rgb(${code} ${code} ${code})`;
+    this.#context.fillRect(0, 0, this.#canvas.width, this.#canvas.height);
+    this.#box.classList.remove("answering");
+    this.#spoken.textContent = "";
+  }
+
+  /** A cross in the middle of the surround. */
+  #cross(): void {
+    this.#blank();
+    const { width, height } = this.#canvas;
+    const arm = Math.max(4, Math.round(Math.min(width, height) / 24));
+    const half = Math.max(1, Math.round(arm / 6));
+    const [x, y] = [Math.round(width / 2), Math.round(height / 2)];
+    this.#context.fillStyle = inkOn(this.#trial.surround ?? 0);
+    this.#context.fillRect(x - arm, y - half, 2 * arm, 2 * half);
+    this.#context.fillRect(x - half, y - arm, 2 * half, 2 * arm);
+  }
+
+  /** Sizes and places the picture in whole device pixels. */
+  #fit(): Size {
+    const { width, height } = this.#trial;
+    const size = fitOne({ width, height, ...roomWithin(this.#root, this.#heading, this.#footer) });
+    this.#canvas.style.width = `${size.width}px`;
+    this.#canvas.style.height = `${size.height}px`;
+    toWholePixels(this.#box, this.#canvas);
+    return size;
+  }
+}

@@ -1,0 +1,221 @@
+/** A visit: consent, instructions, trials as they are decided, the completion code. */
+import { initJsPsych, type JsPsych } from "jspsych";
+import { h, paragraphs } from "../shared/dom.ts";
+import { Refused } from "../shared/http.ts";
+import type { Study, Trial } from "./api.ts";
+import { measureRefresh } from "./display.ts";
+import { say } from "./notice.ts";
+import { askAgain, consentContent, display, Ended, instructionsContent, KEPT, showThanks } from "./pages.ts";
+import { position } from "./plan.ts";
+import type { Session } from "./session.ts";
+import { openLoader, type Pictures, Unusable } from "./stimuli.ts";
+import TextPage, { showPage } from "./text-page.ts";
+import { loadKind, UnknownKind } from "./trials/kinds.ts";
+import type { TrialModule } from "./trials/module.ts";
+
+type TimelineArray = Extract<Parameters<JsPsych["run"]>[0], unknown[]>;
+/** jsPsych's description of one page or trial. */
+type Node = Record<string, unknown> & { on_finish: () => Promise<void> };
+
+/** How long a page may take before it says what it waits for, ms. */
+const PATIENCE_MS = 400;
+
+export class Visit {
+  readonly #study: Study;
+  readonly #session: Session;
+  readonly #jsPsych = initJsPsych({ display_element: display });
+  readonly #loader = openLoader((waiting) =>
+    say("pictures", waiting ? "The pictures take longer to arrive. Nothing is lost; it goes on by itself." : null),
+  );
+  #refresh: Promise<number | null> | null = null;
+  #instructed = false;
+
+  constructor(study: Study, session: Session) {
+    this.#study = study;
+    this.#session = session;
+  }
+
+  async run(): Promise<void> {
+    if (this.#session.state?.status !== "completed") {
+      const kinds = await Promise.all(this.#study.trial_kinds.map(kindOf));
+      // What comes next is asked when a page or a trial is over: jsPsych runs on into what has been added to its timeline by then.
+      const timeline: Node[] = [];
+      const step = async () => {
+        const node = await this.#next(kinds, step);
+        if (node !== null) timeline.push(node);
+      };
+      await step();
+      if (timeline.length > 0) await this.#jsPsych.run(timeline as unknown as TimelineArray);
+    }
+    await this.#finish();
+  }
+
+  /** The page or trial to show now; null when all is answered. */
+  async #next(kinds: readonly TrialModule[], on_finish: () => Promise<void>): Promise<Node | null> {
+    if (this.#session.state?.consented !== true) return this.#consent(on_finish);
+    if (!this.#instructed && !this.#session.begun) return this.#instructions(kinds, on_finish);
+    const trial = this.#session.remaining[0] ?? (await this.#decided());
+    return trial === null ? null : this.#trial(trial, await this.#kindFor(trial), on_finish);
+  }
+
+  #consent(on_finish: () => Promise<void>): Node {
+    return {
+      type: TextPage,
+      heading: this.#study.title,
+      content: () => consentContent(this.#study),
+      button: "I agree and take part",
+      testid: "consent-agree",
+      action: () => this.#session.consent(),
+      on_load: noTabStop,
+      on_finish,
+    };
+  }
+
+  #instructions(kinds: readonly TrialModule[], on_finish: () => Promise<void>): Node {
+    this.#instructed = true;
+    return {
+      type: TextPage,
+      heading: "How it works",
+      content: () => instructionsContent(this.#study, kinds.map((kind) => kind.legend)),
+      button: "Start",
+      testid: "start",
+      on_load: () => {
+        noTabStop();
+        void this.#measure();
+        const [first] = this.#session.remaining;
+        if (first !== undefined) this.#loader.preload(first, true);
+      },
+      action: () => this.#measure(),
+      on_finish,
+    };
+  }
+
+  #trial(trial: Trial, kind: TrialModule, on_finish: () => Promise<void>): Node {
+    const parameters = kind.parameters({
+      study: this.#study,
+      trial,
+      position: position(this.#session.state ?? { trials: [], more: false, most_trials: 0 }, trial),
+      load: () => this.#load(trial),
+      refreshPeriod: () => this.#measure(),
+      onOnset: (decode) => {
+        const next = this.#session.remaining[1];
+        if (next !== undefined) this.#loader.preload(next, decode);
+      },
+      onChoice: (data) => {
+        const { name: trial_type, version: plugin_version } = kind.plugin.info;
+        this.#session.answer(trial, { ...data, time_elapsed: this.#jsPsych.getTotalTime(), trial_type, plugin_version });
+      },
+    });
+    return {
+      ...parameters,
+      type: kind.plugin,
+      on_load: noTabStop,
+      on_finish: () => {
+        this.#loader.release(trial);
+        return on_finish();
+      },
+    };
+  }
+
+  /** The module of a trial's kind, if this display can show what is decided: rather no trial than half a study. */
+  async #kindFor(trial: Trial): Promise<TrialModule> {
+    const ahead = await Promise.all(this.#session.remaining.map(async (trial) => ({ trial, kind: await kindOf(trial.trial) })));
+    for (const { trial, kind } of ahead) {
+      const missing = kind.roles.find((role) => trial.shown[role] === undefined);
+      if (missing !== undefined) throw new Unusable(`Trial ${trial.trial_index} of the plan has no ${missing} stimulus.`);
+      const why = kind.refusal?.(trial, await this.#measure()) ?? null;
+      if (why !== null) throw new Ended("This display can't show the next pictures", [why, `Please open the link you were given in another browser or on another device. ${KEPT}`]);
+    }
+    return kindOf(trial.trial);
+  }
+
+  /** A trial that the server decides on from the answers, once it has them all; null when there are no more. */
+  async #decided(): Promise<Trial | null> {
+    if (this.#session.state?.more !== true) return null;
+    const screen = this.#jsPsych.getDisplayElement() ?? cleared();
+    const waiting: Patience = { screen, heading: "One moment", sentence: "The next pictures depend on your answers, which are being stored." };
+    await this.#stored(waiting);
+    await patiently(waiting, this.#session.grown());
+    screen.replaceChildren();
+    return this.#session.remaining[0] ?? null;
+  }
+
+  /** Resolves when every answer is stored; one that is refused for good is said, and tried again as often as one likes. */
+  async #stored(waiting: Patience): Promise<void> {
+    for (;;) {
+      await patiently(waiting, this.#session.settled());
+      const refused = this.#session.outbox.refused.map((entry) => entry.refused ?? "");
+      if (refused.length === 0) return;
+      await askAgain(waiting.screen, refused, this.#session.id);
+      await this.#session.outbox.retryRefused();
+    }
+  }
+
+  /** A trial's pictures; says so when they are long in coming, for the screen is empty until then. */
+  async #load(trial: Trial): Promise<Pictures> {
+    const slow = setTimeout(() => say("pictures", "The next pictures are on their way; please wait a moment."), 1000);
+    try {
+      return await this.#loader.load(trial);
+    } finally {
+      clearTimeout(slow);
+      say("pictures", null);
+    }
+  }
+
+  #measure(): Promise<number | null> {
+    return (this.#refresh ??= measureRefresh());
+  }
+
+  /** Waits until every answer is stored, then asks for the code: it exists only then. */
+  async #finish(): Promise<void> {
+    const screen = cleared();
+    const waiting: Patience = { screen, heading: "Almost done", sentence: "Your last answers are being stored. This takes a moment." };
+    try {
+      await this.#stored(waiting);
+      showThanks(screen, this.#study, await patiently(waiting, this.#session.complete()));
+    } catch (error) {
+      if (!(error instanceof Refused) || error.code !== "incomplete") throw error;
+      // The server misses a trial that we believed stored. Its word counts: where its plan shows the gap, a reload asks again.
+      await this.#session.refresh();
+      if (this.#session.remaining.length === 0 && this.#session.state?.more !== true) throw error;
+      location.reload();
+    }
+  }
+}
+
+/** What a page says when it keeps somebody waiting. */
+interface Patience {
+  screen: HTMLElement;
+  heading: string;
+  sentence: string;
+}
+
+/** Says what is waited for, where it takes longer than a moment. */
+async function patiently<T>({ screen, heading, sentence }: Patience, work: Promise<T>): Promise<T> {
+  const slow = setTimeout(() => showPage(screen, heading, paragraphs([sentence])), PATIENCE_MS);
+  try {
+    return await work;
+  } finally {
+    clearTimeout(slow);
+  }
+}
+
+/** An empty screen of its own. */
+function cleared(): HTMLElement {
+  const screen = h("div", {});
+  display.replaceChildren(screen);
+  return screen;
+}
+
+/** A kind's module; a page that doesn't know it is older than the study. */
+async function kindOf(kind: string): Promise<TrialModule> {
+  try {
+    return await loadKind(kind);
+  } catch (error) {
+    if (!(error instanceof UnknownKind)) throw error;
+    throw new Ended("Please reload this page", ["This study has been updated since this page was loaded, and the page can't show its next pictures.", KEPT], error);
+  }
+}
+
+/** jsPsych makes its container a tab stop; the page has its own. */
+const noTabStop = () => display.removeAttribute("tabindex");

@@ -1,0 +1,117 @@
+// The researcher's routes of the mock server: the source paper's counts in three versions of one study, and a study that nobody has taken yet.
+import type { components } from "../api/schema.ts";
+import { judged, paper, scale, unjudged } from "./mock-blocks.ts";
+import { problem, type Results } from "./mock-server.ts";
+import { type Material, study } from "./mock-study.ts";
+
+type Schemas = components["schemas"];
+
+const hash = (beginning: string) => beginning.padEnd(64, "9");
+/** Versions of the study, the current one first. */
+export const versions = { current: hash("c0ffee00"), before: hash("beef0123"), pilot: hash("a11ce456") };
+
+const people = (started: number, in_progress: number, completed: number): Schemas["Participants"] => ({ started, in_progress, completed });
+const studies: Schemas["StudySummary"][] = [
+  { id: study.id, title: study.title, version: versions.current, file_hash: hash("f11e"), status: "ready", most_trials: 5, participants: people(36, 2, 32) },
+  {
+    ...{ id: "empty", title: "A study that nobody has taken", version: null, file_hash: hash("0"), status: "preparing", most_trials: 3, participants: people(0, 0, 0) },
+    progress: { done: 3, total: 10, stimulus: "still-arjuna (mc)" },
+  },
+];
+
+const version = (version: string, day: number, participants: Schemas["Participants"], answers: number): Schemas["StudyVersion"] => ({
+  ...{ version, design_hash: hash("de51"), title: study.title, is_current: version === versions.current, participants, answers, stimuli: 10 },
+  ...{ first_served_at: `2026-0${day}-04T09:12:00Z`, last_served_at: `2026-0${day + 1}-03T18:40:00Z` },
+});
+const served: Record<string, Schemas["StudyVersion"][]> = {
+  [study.id]: [version(versions.current, 5, people(36, 2, 32), 161), version(versions.before, 3, people(21, 0, 18), 93), version(versions.pilot, 1, people(4, 0, 3), 16)],
+  empty: [{ ...version(hash("e111"), 5, people(0, 0, 0), 0), is_current: true, title: "A study that nobody has taken" }],
+};
+
+const errors = (rmse: number) => ({ count: 197136, bias: rmse / 40, rmse, p999: 5 * rmse, max: 9 * rmse });
+const provenance = (condition: string, i: number) => ({
+  scene_sha256: "6a1f0c".padEnd(64, "3"),
+  ...(condition === "pa" ? { technique: "pa", table: "u32" } : { technique: "mc", spp: 1024, seed: 7 }),
+  ...{ version: "0.1.0", backend: "cpu", adapter: "2 threads", white: 812.25, size: [592, 333], pixel: "area", output: "still", camera: null },
+  error: { reference: { technique: "mc", spp: 65536, seed: 1 }, frames: [0], all: errors(2e-4 * (1 + i)), penumbra: errors(condition === "pa" ? 9.2e-5 * (1 + 0.4 * i) : 1.3e-3 * (1 + 0.3 * i)), floor: 7.9e-5 },
+  counts: { pixels: 197136, pixels_penumbra: 30512 },
+});
+
+function stimuliOf({ trials }: Material): Schemas["Stimulus"][] {
+  const blocks = ["stills", "photographs", "animation"];
+  return trials.flatMap(({ block_index, item_index, shown }, i) => {
+    const block = blocks[block_index] ?? "";
+    const one = (role: string, condition: string, technique: string) => ({
+      ...{ item: `${block}-${item_index + 1}`, condition, sha256: shown[role]?.sha256 ?? "", pixels_sha256: hash("b17"), provenance: provenance(technique, i) },
+    });
+    return [one("left", "pa", "pa"), one("right", block === "photographs" ? "simulated-photo" : "mc", "mc")];
+  });
+}
+
+/** What the address chose: the versions whose answers are in, and what they showed differently. */
+function chosen(id: string, asked: string, pooledWith: string | null) {
+  const all = served[id] ?? [];
+  const named = asked === "current" ? all.find((v) => v.is_current) : all.find((v) => v.version.startsWith(asked));
+  if (named === undefined) return null;
+  const others = all.filter((v) => v !== named && (pooledWith === "all" || (pooledWith ?? "").split(",").includes(v.version)));
+  const counts = ({ version, participants, answers }: Schemas["StudyVersion"]): Schemas["VersionCounts"] => ({ version, sessions: participants.started, answers });
+  const pooled = [named, ...others];
+  const pilot = pooled.length > 1 && pooled.some((v) => v.version === versions.pilot);
+  const sum = (of: keyof Schemas["Participants"]) => pooled.reduce((n, v) => n + v.participants[of], 0);
+  return {
+    version: named.version,
+    pooled: pooled.map(counts),
+    different_stimuli: pilot ? [{ item: "stills-1", condition: "mc", versions: [versions.pilot] }] : [],
+    other_versions: all.filter((v) => !pooled.includes(v)).map(counts),
+    participants: people(sum("started"), sum("in_progress"), sum("completed")),
+  };
+}
+
+const screening: Schemas["Screening"] = { incomplete: false, max_fast_trials: 1, straight_lining: true };
+const { trial_kinds: _, ...words } = { ...study, trial_kinds: [] };
+const design: Schemas["StudyDefinition"] = { ...words, seed: 1, idle_minutes: 30, completion: {}, conditions: {}, blocks: [], screening };
+const excluded: Schemas["Excluded"][] = [
+  { session_id: "01936d2e-5b1a-7c3e-9a53-0d4b1f2a6c11", reasons: [{ reason: "too_fast", trials: 4, allowed: 1 }, { reason: "straight_lining", trials: 5 }] },
+];
+
+export const results =
+  (stuff: Material): Results =>
+  (path, query) => {
+    if (path === "/api/v1/studies") {
+      // Two pages of one study each: who reads only the first sees half.
+      const at = Number(query.get("cursor") ?? 0);
+      const page: Schemas["Page_StudySummary"] = { items: studies.slice(at, at + 1), next_cursor: at + 1 < studies.length ? String(at + 1) : null };
+      return [200, page];
+    }
+    if (path === "/api/v1/papers/taylor-cameron") return [200, paper()];
+    const [, id = "", rest = ""] = path.match(/^\/api\/v1\/studies\/([^/]+)\/versions(\/.+)?$/) ?? [];
+    const found = studies.find((s) => s.id === id);
+    if (found === undefined) return null;
+    if (rest === "") {
+      const page: Schemas["Page_StudyVersion"] = { items: served[id] ?? [] };
+      return [200, page];
+    }
+    const [, asked = "", what] = rest.match(/^\/([^/]+)\/(.+)$/) ?? [];
+    const choice = chosen(id, asked, query.get("with"));
+    if (choice === null) return problem(404, "not_found", "There is no such version.");
+    const taken = choice.participants.started > 0;
+    const blocks = taken ? judged : unjudged;
+    const common = { study: id, title: found.title, ...choice, stimuli: taken ? stimuliOf(stuff) : [] };
+    if (what === "results") {
+      const reply: Schemas["StudyResults"] = { ...common, excluded: [], blocks };
+      return [200, reply];
+    }
+    if (what === "report") {
+      const methods = ["Participants saw 5 pairs of stimuli in 3 blocks and had to choose one of each pair.", "Effect sizes are Cohen's d and Hedges' g with 95% intervals from the noncentral t distribution."];
+      const reply: Schemas["StudyReport"] = {
+        ...common,
+        ...{ blocks, methods, references: [], screening, design, question: study.question, kelir_version: "0.1.0" },
+        excluded: taken ? excluded : [],
+        blocks_with_excluded: taken ? judged : null,
+        ...(taken ? { scale, scale_note: null } : { scale: null, scale_note: "No scale: no choices." }),
+        chain: { rows: 161, head: "ab12".padEnd(64, "7"), faults: [], blanked: 0 },
+      };
+      return [200, reply];
+    }
+    return null;
+  };

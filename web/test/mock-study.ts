@@ -1,0 +1,97 @@
+// What the mock server serves: a study's words, its pictures and its plan.
+import type { Study, Trial } from "../participant/api.ts";
+import { type Look, shadow, sha256 } from "./samples.ts";
+
+export const study: Omit<Study, "trial_kinds"> = {
+  id: "shadow-puppets",
+  title: "Shadows on a screen",
+  question: "Which image is more likely to be real?",
+  surround: 0.2,
+  size: [592, 333],
+  estimated_minutes: 3,
+  texts: {
+    welcome: [
+      "In this study you look at pairs of pictures of shadow puppets behind a cloth screen. In each pair you choose the one that you think is more likely to be real.",
+      "There are no right answers to learn and nothing to prepare.",
+    ],
+    consent: [
+      "Taking part is voluntary. You can stop at any time by closing this page, and you need not say why.",
+      "We store your choices, how long each took, and the size and refresh rate of your display. We don't store your name or address.",
+      "The answers are analysed together with those of other people and may be published without anything that identifies you.",
+    ],
+    instructions: ["Two pictures appear beside each other, or below each other on a narrow screen.", "Choose one by clicking or touching it, or with the arrow keys. Take the time you need, but trust your first impression."],
+    debriefing: [
+      "All pictures were computed. In some pairs one was drawn by a fast method and the other by a slow, accurate one; in others one was passed through a simulated camera, to look like a photograph.",
+      "We want to know whether people can tell them apart.",
+    ],
+    thanks: ["You have finished. Thank you for your time and your eyes."],
+  },
+};
+
+/** A trial of the plan, before anybody answers. */
+export type Planned = Omit<Trial, "answered">;
+
+export interface Material {
+  /** By hash. */
+  bytes: Map<string, { type: string; data: Buffer }>;
+  trials: Planned[];
+}
+
+/** Drawing takes longer than all else here, so each look is drawn once. */
+const drawn = new Map<string, Buffer>();
+function picture(look: Look): Buffer {
+  const key = JSON.stringify(look);
+  const png = drawn.get(key) ?? shadow(look);
+  drawn.set(key, png);
+  return png;
+}
+
+class Maker implements Material {
+  readonly bytes = new Map<string, { type: string; data: Buffer }>();
+  readonly trials: Planned[] = [];
+
+  still(look: Look) {
+    return this.#add("image/png", picture(look));
+  }
+
+  animation(look: Look, frames: number, fps: number) {
+    const list = Array.from({ length: frames }, (_, i) => this.still({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) }).sha256);
+    return this.#add("application/vnd.kelir.animation+json", Buffer.from(JSON.stringify({ fps, loop: true, width: 592, height: 333, frames: list })));
+  }
+
+  trial(trial: Omit<Planned, "trial_index" | "width" | "height">): void {
+    this.trials.push({ trial_index: this.trials.length, ...trial, width: 592, height: 333 });
+  }
+
+  #add(type: string, data: Buffer) {
+    const hash = sha256(data);
+    this.bytes.set(hash, { type, data });
+    return { sha256: hash, url: `/stimuli/${hash}` };
+  }
+}
+
+/** Two pairs of each of two blocks and one pair of animations, as small as the tests like them. */
+export function material({ frames = 12, fps = 12 } = {}): Material {
+  const made = new Maker();
+  const pair = (block_index: number, item_index: number, kind: Planned["kind"], left: ReturnType<Maker["still"]>, right: ReturnType<Maker["still"]>) =>
+    made.trial({ trial: "two-alternative", block_index, item_index, kind, shown: { left, right }, settings: null });
+  pair(0, 0, "still", made.still({ turn: 0.1 }), made.still({ turn: 0.1, noise: 0.1 }));
+  pair(0, 1, "still", made.still({ turn: -0.3, soft: 20, noise: 0.1 }), made.still({ turn: -0.3, soft: 20 }));
+  pair(1, 0, "still", made.still({ turn: 0.5 }), made.still({ turn: 0.5, noise: 0.25 }));
+  pair(1, 1, "still", made.still({ turn: 0.9, soft: 12 }), made.still({ turn: 0.9, soft: 12, noise: 0.25 }));
+  pair(2, 0, "animation", made.animation({ soft: 8 }, frames, fps), made.animation({ soft: 8, noise: 0.1 }, frames, fps));
+  return made;
+}
+
+/** Durations of the mock's two-interval trials, ms. */
+export const durations = { fixation_ms: 200, first_ms: 300, mask_ms: 100, second_ms: 250 };
+
+/** Trials of the kind two-interval: so many stills, then `animations` of animations. */
+export function intervals({ stills = 2, animations = 0, settings = durations } = {}): Material {
+  const made = new Maker();
+  const trial = (kind: Planned["kind"], item_index: number, first: ReturnType<Maker["still"]>, second: ReturnType<Maker["still"]>) =>
+    made.trial({ trial: "two-interval", block_index: 0, item_index, kind, shown: { first, second }, settings });
+  for (let i = 0; i < stills; i++) trial("still", i, made.still({ turn: 0.1 * i }), made.still({ turn: 0.1 * i, noise: 0.1 }));
+  for (let i = 0; i < animations; i++) trial("animation", stills + i, made.animation({ soft: 8 }, 6, 12), made.animation({ soft: 8, noise: 0.1 }, 6, 12));
+  return made;
+}
