@@ -5,10 +5,14 @@ import { mask, seedOf } from "../../participant/trials/two-interval/mask.ts";
 import { durations, intervals, study } from "../mock-study.ts";
 import { launch, sizes } from "./chromium.mjs";
 import { differing, pixels, screenOf } from "./pixels.mjs";
-import { answer, begin, position, rows, stored, visit } from "./visit.mjs";
+import { answer, begin, painted, position, rows, stored, visit } from "./visit.mjs";
 
 const STEPS = ["fixation", "first", "mask", "second"];
-const answering = ({ hook }) => hook("choice-first").waitFor({ state: "visible" });
+/** Waits for the response screen. */
+const answering = async ({ hook, page }) => {
+  await hook("choice-first").waitFor({ state: "visible" });
+  await painted(page);
+};
 
 /** What is wrong with the durations of a stored answer; nothing is, where each step got what was asked for to half a frame, or more where a frame was dropped. */
 function wrong(row, asked) {

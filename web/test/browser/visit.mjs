@@ -39,8 +39,14 @@ export async function visit(t, { options = sizes.desktop, query = "", chromium =
   return { mock, context, page, problems, url, hook: (id) => page.getByTestId(id) };
 }
 
+/** Resolves when what is on the page has been painted: what is pressed earlier is no answer. */
+export const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
 /** Waits for trial `i`, counted from 0. */
-export const position = (page, i, of = "5") => page.getByText(`${i + 1} of ${of}`, { exact: true }).waitFor();
+export async function position(page, i, of = "5") {
+  await page.getByText(`${i + 1} of ${of}`, { exact: true }).waitFor();
+  await painted(page);
+}
 
 /** From the first page to the first trial. */
 export async function begin({ hook, page }, of = "5") {
