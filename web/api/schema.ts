@@ -1,5 +1,198 @@
-// Generated from openapi.json by `npm run types`; do not edit. e6835f603d409a05d525d1d927919b78900bf7106f55c8251f3c6251412e0326 522793293016088edabafd9c844e05824d1b124472c1fa43e6a6c325a4532699
+// Generated from openapi.json by `npm run types`; do not edit. e21bf2a78eb602ee592162e14033046e506ae501c82dc578862e5142fc5d15de f4812381738d544505243a0435d1668773820f5d87f2595c809d0b5722f5816a
 export interface paths {
+    "/api/v1/auth/session": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Who is signed in. */
+        get: operations["get_signed_in"];
+        put?: never;
+        /** Sign in: the answer sets the cookie `kelir_session`, for twelve hours. */
+        post: operations["sign_in"];
+        /** Sign out; whoever is not signed in stays so. */
+        delete: operations["sign_out"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/docs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Go on to `docs/`. */
+        get: operations["find_docs"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/docs/": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** This document as a page. */
+        get: operations["get_docs"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/docs/style.css": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The page's style. */
+        get: operations["get_docs_style"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/openapi.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** This document. */
+        get: operations["get_openapi"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/papers/taylor-cameron": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The survey of Taylor and Cameron, its three tests computed again. */
+        get: operations["get_taylor_cameron"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{session}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Where a session stands; asking keeps its place in the design. */
+        get: operations["get_session"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{session}/completion": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Finish a session whose every trial is stored; the code is the same each time. */
+        post: operations["complete_session"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{session}/consent": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Give consent; the first time counts. */
+        post: operations["give_consent"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{session}/trials/{trial_index}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Answer a trial. The same answer may be sent again; another one is refused, and the first one stands.
+         * @description What the trial's kind asks for is held to its rules; keys beside it are kept as they come. An acknowledgement means that the answer is
+         *     on disk.
+         */
+        put: operations["put_answer"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The studies that are served, by id. */
+        get: operations["list_studies"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/studies/{study}": {
         parameters: {
             query?: never;
@@ -7,6 +200,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
+        /** What a study says of itself before anybody takes part. */
         get: operations["get_study"];
         put?: never;
         post?: never;
@@ -25,103 +219,8 @@ export interface paths {
         };
         get?: never;
         put?: never;
+        /** Begin a session. The answer holds its token, which is told this once. */
         post: operations["create_session"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sessions/{session}": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get: operations["get_session"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sessions/{session}/consent": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        post: operations["give_consent"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sessions/{session}/trials/{trial_index}": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put: operations["put_answer"];
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sessions/{session}/completion": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        post: operations["complete_session"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/auth/session": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get: operations["get_researcher"];
-        put?: never;
-        post: operations["sign_in"];
-        delete: operations["sign_out"];
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/studies": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get: operations["list_studies"];
-        put?: never;
-        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -135,6 +234,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
+        /** The versions of a study, the one that is served first. */
         get: operations["list_versions"];
         put?: never;
         post?: never;
@@ -144,14 +244,49 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/studies/{study}/versions/{version}/results": {
+    "/api/v1/studies/{study}/versions/{version}/codebook.csv": {
         parameters: {
             query?: never;
             header?: never;
             path?: never;
             cookie?: never;
         };
-        get: operations["get_results"];
+        /** What each column of `responses.csv` is, as a table. */
+        get: operations["get_codebook_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/codebook.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What each column of `responses.csv` is. */
+        get: operations["get_codebook"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/pairs.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The choices as pwcmp reads them, one row a trial. */
+        get: operations["get_pairs_csv"];
         put?: never;
         post?: never;
         delete?: never;
@@ -167,6 +302,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
+        /** The full report: every number there is. */
         get: operations["get_report"];
         put?: never;
         post?: never;
@@ -176,14 +312,103 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/papers/taylor-cameron": {
+    "/api/v1/studies/{study}/versions/{version}/report.html": {
         parameters: {
             query?: never;
             header?: never;
             path?: never;
             cookie?: never;
         };
-        get: operations["get_paper"];
+        /** The full report as one HTML file. */
+        get: operations["get_report_html"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/report.md": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The full report as one Markdown file, its figures within. */
+        get: operations["get_report_md"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/responses.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** One row a trial, all that is known of it. */
+        get: operations["get_responses_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/results": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The results in short: the paper's test for each block, the scale, the stimuli. */
+        get: operations["get_results"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/healthz": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Whether the server answers and its database can be read. */
+        get: operations["get_health"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/stimuli/{sha256}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The bytes of a stimulus, or of one frame of an animation; they never change.
+         * @description An animation is JSON (`application/vnd.kelir.animation+json`) that names its frames by hash.
+         */
+        get: operations["get_stimulus"];
         put?: never;
         post?: never;
         delete?: never;
@@ -196,15 +421,61 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
-        /** @description The answer is stored. */
+        /** @description That an answer is on disk. */
         Acknowledgement: {
+            /** @description Always true: what is not stored is refused. */
             acknowledged: boolean;
-            /** Format: int64 */
-            next_trial?: number | null;
+            /** @description Whether more trials will be decided. */
             more: boolean;
-            /** @description The decided trials from `known` on. */
+            /**
+             * Format: int32
+             * @description The first decided trial without an answer; null when there is none.
+             */
+            next_trial: number | null;
+            /** @description The decided trials from `known` on; none without `known`. */
             trials: components["schemas"]["Trial"][];
         };
+        /** @description `[blocks.adaptive]`: the procedure, in the levels of the block's items. */
+        Adaptive: {
+            /** @enum {string} */
+            procedure: "staircase";
+            /**
+             * Format: int32
+             * @description Ends after so many reversals …
+             */
+            reversals: number;
+            /**
+             * Format: double
+             * @description The level that comes first; absent: the easiest.
+             */
+            start?: number | null;
+            /** @description By how many levels it moves, each until the next reversal and the last from then on. */
+            steps: number[];
+            /** @description Which answers move it. */
+            track: components["schemas"]["Track"];
+            /**
+             * Format: int32
+             * @description … and in any case after so many trials.
+             */
+            trials: number;
+        } | {
+            /**
+             * Format: double
+             * @description … or once the threshold's posterior standard deviation is below this, in levels.
+             */
+            precise_enough?: number | null;
+            /** @enum {string} */
+            procedure: "quest-plus";
+            /**
+             * Format: int32
+             * @description Ends after so many trials …
+             */
+            trials: number;
+        };
+        /** @description The answer to a trial, as its kind asks. */
+        Answer: components["schemas"]["TwoAlternativeAnswer"] | components["schemas"]["TwoIntervalAnswer"];
+        /** @description How the two pictures stood. */
+        Arrangement: "side" | "stack";
         /** @description What an exact binomial test says. */
         BinomialTest: {
             /**
@@ -245,7 +516,8 @@ export interface components {
             successes: number;
         };
         /** @description Pairs of the same two conditions, shown together and analysed together. */
-        Block: {
+        Block: components["schemas"]["TrialKind"] & {
+            adaptive?: components["schemas"]["Adaptive"] | null;
             /** @description Whether the target is the right answer that attention alone is needed for; such a block screens and is not analysed. */
             catch?: boolean;
             /** @description The two conditions compared. */
@@ -266,8 +538,11 @@ export interface components {
         BlockReport: components["schemas"]["BlockSummary"] & {
             /** @description What is beside the paper's test. */
             analysis: components["schemas"]["ChoiceAnalysis"];
-            /** @description Each pair alone, with all who answered it. */
+            /** @description Each item alone, with all who answered it; empty for an adaptive block, which shows one item many times. */
             by_item: components["schemas"]["ItemReport"][];
+            first?: components["schemas"]["Proportion"] | null;
+            /** @description The role that stands first: left, or the first interval. */
+            first_role: components["schemas"]["Role"];
             /**
              * Format: double
              * @description p corrected by Holm's method for the number of blocks; null where p is.
@@ -277,9 +552,6 @@ export interface components {
             rt_ms?: components["schemas"]["Quartiles"] | null;
             /** @description Their 1st to 99th percentile, interpolated likewise; empty without answers. */
             rt_percentiles_ms: number[];
-            first?: components["schemas"]["Proportion"] | null;
-            /** @enum {string} */
-            first_role: "left" | "first";
         };
         /**
          * @description A block's choices of the target per participant, and the paper's two-tailed one-sample t-test of them.
@@ -289,7 +561,7 @@ export interface components {
         BlockSummary: {
             /** @description The two conditions. */
             conditions: string[];
-            /** @description Number of target choices → number of participants, from 0 to `pairs`. */
+            /** @description Number of target choices → number of participants, from 0 to `items`; empty for an adaptive block. */
             counts: {
                 [key: string]: number;
             };
@@ -305,7 +577,7 @@ export interface components {
              * @description Participants who answered some but not all, left out.
              */
             incomplete: number;
-            /** @description Number of pairs. */
+            /** @description Number of items. */
             items: number;
             /** @description Stills or animations. */
             kind: components["schemas"]["Kind"];
@@ -321,7 +593,7 @@ export interface components {
             mu: number;
             /**
              * Format: int64
-             * @description Participants who answered all pairs.
+             * @description Participants who answered all items, or went to the end of an adaptive procedure.
              */
             n: number;
             /** @description Why a number is null. */
@@ -345,7 +617,8 @@ export interface components {
             target: string;
             /** @description Block's title. */
             title: string;
-            trial: components["schemas"]["TrialKind"];
+            /** @description How its trials ask. */
+            trial: string;
         };
         /** @description A bootstrap interval. */
         Bootstrap: {
@@ -407,20 +680,20 @@ export interface components {
         };
         /** @description What checking the stored answers found. */
         Chain: {
-            /** Format: int64 */
-            rows: number;
-            head: string;
-            faults: components["schemas"]["ChainFault"][];
-            /** Format: int64 */
+            /**
+             * Format: int64
+             * @description Answers that were blanked by a withdrawal.
+             */
             blanked: number;
-        };
-        /** @description A row that is not what was written. */
-        ChainFault: {
-            chain: string;
-            /** Format: int64 */
-            seq: number;
-            what: string;
-            note?: string;
+            /** @description Rows that are not what was written. */
+            faults: components["schemas"]["Fault"][];
+            /** @description Hash of the last row; noting it elsewhere also proves that no later rows were cut off. */
+            head: string;
+            /**
+             * Format: int64
+             * @description Rows that were checked.
+             */
+            rows: number;
         };
         /** @description Numbers of target choices per participant, judged. */
         ChoiceAnalysis: {
@@ -442,6 +715,11 @@ export interface components {
             /** @description The paper's two-tailed t-test against half the pairs. */
             t_test: components["schemas"]["TTest"];
             wilcoxon?: components["schemas"]["SignedRank"] | null;
+        };
+        /** @description What the columns of a table are. */
+        Codebook: {
+            /** @description The columns, in the table's order. */
+            columns: components["schemas"]["Column"][];
         };
         /** @description One coefficient on the log-odds scale. */
         Coefficient: {
@@ -475,6 +753,19 @@ export interface components {
              * @description estimate / standard error.
              */
             statistic: number;
+        };
+        /** @description A column of a table, or a field of a record. */
+        Column: {
+            /** @description `text`, `number`, `integer`, `boolean`, `list` or `object`. */
+            kind: string;
+            /** @description What it says. */
+            meaning: string;
+            /** @description Its name. */
+            name: string;
+            /** @description Unit of its numbers; empty: none. */
+            unit: string;
+            /** @description The values that it can have; empty: any of its kind. */
+            values?: components["schemas"]["Meaning"][];
         };
         /** @description One comparison of the paper, computed again. */
         Comparison: {
@@ -514,7 +805,7 @@ export interface components {
             /** @description Does its t round to the printed one? */
             t_as_printed: boolean;
             /** @description The paper's test. */
-            test: components["schemas"]["TTest"];
+            test: components["schemas"]["OneSampleTTest"];
             /** @description What was compared. */
             title: string;
             /** @description Wilcoxon's signed-rank test, ties exact. */
@@ -522,11 +813,13 @@ export interface components {
         };
         /** @description The end of a session. */
         Completion: {
+            /** @description The code that says so, the same each time. */
             completion_code: string;
-            redirect?: string | null;
+            /** @description Where to go on to, if the study leads anywhere. */
+            redirect?: string;
         };
         /** @description The code at the end and where it leads. */
-        CompletionRule: {
+        CompletionSettings: {
             /** @description One code for all (recruiting panels ask for it); absent: each session gets its own. */
             code?: string | null;
             /** @description Address to go on to; `[CODE]` and `[NAME]` of an address parameter are filled in. */
@@ -597,14 +890,10 @@ export interface components {
          * @enum {string}
          */
         Correction: "CR0" | "CR1" | "CR1S";
-        /** @description A new session and its secret. */
+        /** @description A session that has just begun. */
         CreatedSession: components["schemas"]["SessionState"] & {
-            /** @description The session's secret; told once. */
+            /** @description The session's secret, for `Authorization: Bearer`; it is told this once. */
             token: string;
-        };
-        /** @description What a researcher signs in with. */
-        Credentials: {
-            password: string;
         };
         /** @description One point of a curve. */
         CurvePoint: {
@@ -647,11 +936,13 @@ export interface components {
              */
             p: number;
         };
-        /** @description A stimulus that the pooled versions showed differently. */
+        /** @description An item that pooled versions show in different ways under one condition. */
         DifferentStimulus: {
-            item: string;
+            /** @description Condition's name. */
             condition: string;
-            /** @description The versions that showed something else than the named one. */
+            /** @description Item's id. */
+            item: string;
+            /** @description The versions that show it otherwise than the first of the pooled ones, or not at all. */
             versions: string[];
         };
         /**
@@ -774,36 +1065,74 @@ export interface components {
              */
             trials: number;
         };
-        /** @description What is wrong with one value. */
-        FieldError: {
-            /** @description JSON Pointer to it. */
-            pointer: string;
-            /** @description It, as it came; absent where it is missing. */
-            value?: unknown;
-            rule: string;
+        /** @description A stored answer that is not what was written. */
+        Fault: {
+            /**
+             * Format: int32
+             * @description Version of the chain: 1 (all studies in one, closed) or 2 (the study's own).
+             */
+            chain: number;
+            /** @description What somebody who looked into it noted; null while it is unexplained. */
+            note?: string | null;
+            /**
+             * Format: int64
+             * @description Place in its chain, from 1.
+             */
+            seq: number;
+            /** @description What is wrong with it. */
+            what: string;
         };
-        /** @description How an animation was played. */
+        /** @description One thing that is wrong with a JSON value. */
+        FieldError: {
+            /** @description Where: a JSON Pointer (RFC 6901); empty for the whole. */
+            pointer: string;
+            /** @description The rule that it breaks, as words that follow the field's name. */
+            rule: string;
+            /** @description What was found there, long texts cut; absent where the field is missing, or secret. */
+            value?: unknown;
+        };
+        /** @description How an animation was shown. */
         FrameLog: {
-            /** Format: double */
-            fps: number;
-            /** Format: double */
-            refresh_hz: number;
-            /** Format: int64 */
-            hold: number;
-            /** Format: int64 */
-            refreshes: number;
-            /** Format: int64 */
-            shown: number;
-            /** Format: int64 */
-            skipped: number;
-            /** Format: int64 */
-            missed_refreshes: number;
-            /** Format: double */
-            longest_interval_ms: number;
-            intervals: {
-                [key: string]: number;
-            };
-            late: number[][];
+            /**
+             * Format: double
+             * @description Frames per second of the animation.
+             */
+            fps?: number | null;
+            /**
+             * Format: double
+             * @description Refreshes that each frame is shown for.
+             */
+            hold?: number | null;
+            /**
+             * Format: double
+             * @description Longest time between two draws.
+             */
+            longest_interval_ms?: number | null;
+            /**
+             * Format: double
+             * @description Refreshes at which the browser did not let the page draw.
+             */
+            missed_refreshes?: number | null;
+            /**
+             * Format: double
+             * @description Refresh rate that the animation was timed by.
+             */
+            refresh_hz?: number | null;
+            /**
+             * Format: double
+             * @description Refreshes from the first frame to the choice.
+             */
+            refreshes?: number | null;
+            /**
+             * Format: double
+             * @description Frames drawn.
+             */
+            shown?: number | null;
+            /**
+             * Format: double
+             * @description Frames passed over without being drawn.
+             */
+            skipped?: number | null;
         };
         /** @description Does the curve hold the data? */
         Goodness: {
@@ -835,6 +1164,8 @@ export interface components {
          * @enum {string}
          */
         IccEstimator: "fleiss-cuzick" | "anova" | "beta-binomial";
+        /** @description What an answer was given with. */
+        Input: "mouse" | "touch" | "pen" | "keyboard";
         /** @description A confidence (or credible) interval. */
         Interval: {
             /**
@@ -852,6 +1183,29 @@ export interface components {
              * @description Lower end.
              */
             low: number;
+        };
+        /** @description How long each step of a two-interval trial is asked to last, in ms. A page rounds each to whole frames of its display. */
+        Intervals: {
+            /**
+             * Format: double
+             * @description The first stimulus, 1 to 60000.
+             */
+            first_ms: number;
+            /**
+             * Format: double
+             * @description A cross in the middle, 0 (none) to 10000.
+             */
+            fixation_ms: number;
+            /**
+             * Format: double
+             * @description Noise in its place, 0 (none) to 10000.
+             */
+            mask_ms: number;
+            /**
+             * Format: double
+             * @description The second stimulus, 1 to 60000.
+             */
+            second_ms: number;
         };
         /** @description How alike the choices of one participant are. */
         Intraclass: {
@@ -937,6 +1291,11 @@ export interface components {
              */
             fixed: number;
         };
+        /**
+         * Format: double
+         * @description A length that is not negative.
+         */
+        Length: number;
         /** @description The choices at one level. */
         LevelPoint: {
             /**
@@ -945,6 +1304,13 @@ export interface components {
              */
             level: number;
             target?: components["schemas"]["Proportion"] | null;
+        };
+        /** @description What one value of a column means. */
+        Meaning: {
+            /** @description What it means; empty where the value says it. */
+            meaning: string;
+            /** @description The value. */
+            value: string;
         };
         /** @description Participants' log odds scatter normally about the fixed effects: logit P = xβ + σz, z ~ N(0, 1) a participant. */
         MixedLogit: {
@@ -1003,14 +1369,16 @@ export interface components {
          * @enum {string}
          */
         Model: "thurstone" | "bradley-terry";
-        /** @description What is known of a participant and the display. */
+        /** @description What is known of someone who begins. */
         NewSession: {
-            params?: {
-                [key: string]: string;
-            };
+            /** @description What the browser says about its display; kept as it comes. */
             display?: {
                 [key: string]: unknown;
-            };
+            } | null;
+            /** @description The parameters of the address that they came by. The first of `PROLIFIC_PID`, `workerId`, `subject_id` and `id` that is a plain name names the participant. */
+            params?: {
+                [key: string]: string;
+            } | null;
         };
         /** @description One observer against the scale of the others. */
         ObserverFit: {
@@ -1040,22 +1408,48 @@ export interface components {
              */
             z?: number | null;
         };
+        /** @description What a one-sample (or paired) t-test says. */
+        OneSampleTTest: {
+            /**
+             * Format: double
+             * @description Degrees of freedom, n − 1.
+             */
+            df: number;
+            /**
+             * Format: double
+             * @description Their mean (the mean difference), in the units of the values.
+             */
+            mean: number;
+            /**
+             * Format: double
+             * @description The mean under the null hypothesis.
+             */
+            mu: number;
+            /**
+             * Format: int64
+             * @description How many values (pairs).
+             */
+            n: number;
+            /**
+             * Format: double
+             * @description Two-sided p-value, P(|T| ≥ |t|) under the null hypothesis; never 0 while it is above 5e-324.
+             */
+            p: number;
+            /**
+             * Format: double
+             * @description Their standard deviation, n − 1 in the denominator.
+             */
+            sd: number;
+            /**
+             * Format: double
+             * @description (mean − mu) / (sd / √n).
+             */
+            t: number;
+        };
         /** @description Where the scale has its zero. */
         Origin: "mean" | {
             /** @description The condition of this index. */
             condition: number;
-        };
-        /** @description One page of a list. */
-        Page_StudySummary: {
-            items: components["schemas"]["StudySummary"][];
-            /** @description Where the next page begins; null on the last. */
-            next_cursor?: string | null;
-        };
-        /** @description One page of a list. */
-        Page_StudyVersion: {
-            items: components["schemas"]["StudyVersion"][];
-            /** @description Where the next page begins; null on the last. */
-            next_cursor?: string | null;
         };
         /** @description A parameter of the curve. */
         Parameter: {
@@ -1094,6 +1488,21 @@ export interface components {
              * @description Sessions ever begun.
              */
             started: number;
+        };
+        /** @description A version of a study and what it has gathered. */
+        PooledVersion: {
+            /**
+             * Format: int64
+             * @description Answers to it.
+             */
+            answers: number;
+            /**
+             * Format: int64
+             * @description Sessions begun with it.
+             */
+            sessions: number;
+            /** @description SHA-256 of its design and of the pixels that it shows. */
+            version: string;
         };
         /** @description What the paper prints about one comparison, to three decimals. */
         Printed: {
@@ -1134,27 +1543,40 @@ export interface components {
             /** @description Splits of that many participants whose t rounds to it. */
             splits_with_this_t: components["schemas"]["Split"][];
         };
-        /** @description Problem details (RFC 9457). */
+        /** @description An answer that says what is wrong (RFC 9457). */
         Problem: {
-            type: string;
-            title: string;
-            /** Format: int64 */
-            status: number;
-            /** @description snake_case, for programs. */
-            code: string;
+            /** @description What kind of problem it is. */
+            code: components["schemas"]["ProblemCode"];
+            /** @description What happened, for people. */
             detail: string;
+            /** @description The fields or parameters that are wrong, all of them up to a hundred. */
             errors?: components["schemas"]["FieldError"][];
+            /** @description With `incomplete`: indices of the decided trials that have no answer yet. */
             missing?: number[];
+            /** @description With `incomplete`: whether more trials are to be decided. */
             more?: boolean;
-            stored?: unknown;
+            /**
+             * Format: int32
+             * @description The HTTP status.
+             */
+            status: number;
+            /** @description With `already_answered`: what is stored. */
+            stored?: components["schemas"]["StoredAnswer"];
+            /** @description The status in words. */
+            title: string;
+            /** @description Always `about:blank`: `code` tells the kinds apart. */
+            type: string;
         };
-        /** @description How far the making of stimuli is. */
+        /** @description What kind of problem it is. */
+        ProblemCode: "bad_body" | "bad_json" | "invalid_parameter" | "ambiguous_version" | "unauthorized" | "wrong_password" | "not_found" | "method_not_allowed" | "no_consent" | "already_answered" | "incomplete" | "too_large" | "not_json" | "invalid_field" | "too_many_tries" | "internal" | "not_ready" | "stimuli_failed";
+        /** @description How far the stimuli are. */
         Progress: {
-            /** Format: int64 */
+            /** @description Stimuli that are ready. */
             done: number;
-            /** Format: int64 */
-            total: number;
+            /** @description What is being made now. */
             stimulus: string;
+            /** @description Stimuli in all. */
+            total: number;
         };
         /** @description A share of choices. */
         Proportion: {
@@ -1275,10 +1697,6 @@ export interface components {
             /** @description Why there is no scale. */
             scale_note?: string | null;
         };
-        /** @description Who is signed in. */
-        Researcher: {
-            name: string;
-        };
         /** @description A logistic regression whose standard errors allow any dependence within participants. */
         RobustLogit: {
             /** @description In the order of the predictors; p and interval from t with `df`. */
@@ -1308,6 +1726,8 @@ export interface components {
              */
             trials: number;
         };
+        /** @description The place that a stimulus has in its trial. */
+        Role: "left" | "right" | "first" | "second";
         /** @description Positions of conditions on one axis. */
         Scale: {
             /**
@@ -1404,30 +1824,52 @@ export interface components {
         };
         /** @description Where a session stands. */
         SessionState: {
-            session_id: string;
-            study_id: string;
-            /** @enum {string} */
-            status: "consent" | "in_progress" | "completed";
+            /** @description The code at the end, once completed. */
+            completion_code?: string;
+            /** @description Whether consent has been given. */
             consented: boolean;
-            /** @description The trials decided so far, by trial_index from 0. */
-            trials: components["schemas"]["Trial"][];
-            /** @description Whether others will be decided from answers. */
+            /** @description Whether more trials will be decided, from the answers to these. */
             more: boolean;
-            /**
-             * Format: int64
-             * @description The most trials there can be.
-             */
+            /** @description Most trials there can be. */
             most_trials: number;
-            /** Format: int64 */
-            next_trial?: number | null;
-            completion_code?: string | null;
-            redirect?: string | null;
+            /**
+             * Format: int32
+             * @description The first decided trial without an answer; null when there is none.
+             */
+            next_trial: number | null;
+            /** @description Where to go on to, once completed, if the study leads anywhere. */
+            redirect?: string;
+            /** @description Its id (UUID v7). */
+            session_id: string;
+            /** @description How far it is. */
+            status: components["schemas"]["SessionStatus"];
+            /** @description The study's id. */
+            study_id: string;
+            /** @description The trials that are decided so far, by index from 0. The list only grows. */
+            trials: components["schemas"]["Trial"][];
         };
+        /** @description How far a session is. */
+        SessionStatus: "consent" | "in_progress" | "completed";
+        /** @description One of the two pictures. */
+        Side: "left" | "right";
         /**
          * @description The shape of the curve F between guessing and lapsing.
          * @enum {string}
          */
         Sigmoid: "gaussian" | "logistic" | "weibull";
+        /** @description What signs a researcher in. */
+        SignIn: {
+            /**
+             * Format: password
+             * @description The researcher's password, as in the data folder's `researcher-password`.
+             */
+            password: string;
+        };
+        /** @description Who is signed in. */
+        SignedIn: {
+            /** @description The researcher's name. */
+            name: string;
+        };
         /** @description What Wilcoxon's signed-rank test says. */
         SignedRank: {
             /** @description How it was found. */
@@ -1466,45 +1908,116 @@ export interface components {
              */
             t: number;
         };
+        /** @description A number of whole frames for each step of the trial. */
+        StepFrames: {
+            /**
+             * Format: int32
+             * @description The first stimulus.
+             */
+            first: number;
+            /**
+             * Format: int32
+             * @description The fixation cross.
+             */
+            fixation: number;
+            /**
+             * Format: int32
+             * @description The mask between.
+             */
+            mask: number;
+            /**
+             * Format: int32
+             * @description The second stimulus.
+             */
+            second: number;
+        };
+        /** @description A duration for each step of the trial, in ms. */
+        StepTimes: {
+            /**
+             * Format: double
+             * @description The first stimulus.
+             */
+            first: number;
+            /**
+             * Format: double
+             * @description The fixation cross.
+             */
+            fixation: number;
+            /**
+             * Format: double
+             * @description The mask between.
+             */
+            mask: number;
+            /**
+             * Format: double
+             * @description The second stimulus.
+             */
+            second: number;
+        };
         /** @description What one item of a study shows under one condition. */
         Stimulus: {
-            item: string;
+            /** @description Condition's name. */
             condition: string;
-            sha256: string;
-            pixels_sha256?: string | null;
+            /** @description Item's id. */
+            item: string;
+            /** @description Hash of its decoded pixels. */
+            pixels_sha256: string;
             /** @description How it was made, with its measured error. */
             provenance: unknown;
-        };
-        /** @description The bytes of one stimulus: where they are and what they hash to. */
-        StimulusRef: {
+            /** @description Hash of the stimulus's file. */
             sha256: string;
+        };
+        /** @description The bytes of one stimulus: what they hash to and where they are. */
+        StimulusRef: {
+            /** @description SHA-256 of the bytes. */
+            sha256: string;
+            /** @description Their address on this server. */
             url: string;
+        };
+        /** @description An answer as it is stored. */
+        StoredAnswer: {
+            /** @description What analyses read of it; null once it was blanked by a withdrawal. */
+            answer: {
+                [key: string]: unknown;
+            } | null;
+            /** @description All that the browser sent; null once it was blanked by a withdrawal. */
+            payload: {
+                [key: string]: unknown;
+            } | null;
+            /** @description When the server committed it, ISO-8601 UTC. */
+            received_at: string;
         };
         /** @description What a study says of itself before anybody takes part. */
         Study: {
-            id: string;
-            title: string;
-            /** @description The question of every trial. */
-            question: string;
             /**
-             * Format: double
-             * @description Linear luminance of the grey around the stimuli, 0..=1.
+             * Format: int32
+             * @description How long taking part is said to take, in minutes.
              */
-            surround: number;
+            estimated_minutes: number;
+            /** @description Its id, as in addresses. */
+            id: string;
+            /** @description The question over every trial. */
+            question: string;
             /** @description Stimulus size [width, height] in pixels. */
             size: number[];
+            /**
+             * Format: double
+             * @description Linear luminance of the grey around the stimuli, 0 to 1.
+             */
+            surround: number;
+            /** @description What participants read. */
             texts: components["schemas"]["Texts"];
-            /** Format: int64 */
-            estimated_minutes: number;
-            /** @description Kinds of trial in order of first use. */
-            trial_kinds: components["schemas"]["TrialKind"][];
+            /** @description Title. */
+            title: string;
+            /** @description Kinds of trial, in the order of first use. */
+            trial_kinds: components["schemas"]["TrialName"][];
         };
         /** @description A study as its file defines it; every value has been checked. */
         StudyDefinition: {
             /** @description Blocks in the order they are shown. */
             blocks: components["schemas"]["Block"][];
             /** @description The code at the end and where it leads. */
-            completion: components["schemas"]["CompletionRule"];
+            completion: components["schemas"]["CompletionSettings"];
             /** @description How stimuli come to be, by condition name. */
             conditions: {
                 [key: string]: components["schemas"]["Condition"];
@@ -1542,24 +2055,36 @@ export interface components {
             /** @description Title for participants and researchers. */
             title: string;
         };
+        /** @description One page of the studies. */
+        StudyList: {
+            /** @description The studies on it. */
+            items: components["schemas"]["StudySummary"][];
+            /** @description What to ask with for the next page; null on the last one. */
+            next_cursor: string | null;
+        };
         /** @description Everything kelir can say of one version of a study, as a report or a paper's methods and results need it. */
         StudyReport: components["schemas"]["Report"] & {
             /** @description When the first and the last answer came, ISO-8601 UTC; null without answers. */
             answered?: string[] | null;
             /** @description The blocks with everybody; null when nobody is excluded. */
             blocks_with_excluded?: components["schemas"]["BlockReport"][] | null;
-            /** @description Whether the stored answers are what was written: the chain over all studies of the data folder. */
+            /** @description Whether the stored answers are what was written: the study's own chain and, before it, the one that all studies used to share. */
             chain: components["schemas"]["Chain"];
             /** @description The study's definition, every value of it. */
             design: components["schemas"]["StudyDefinition"];
+            /** @description What the pooled versions do not show alike. */
+            different_stimuli: components["schemas"]["DifferentStimulus"][];
             /** @description Who is left out by the study's rules of screening, and why. */
             excluded: components["schemas"]["Excluded"][];
             /** @description Version of kelir that judged. */
             kelir_version: string;
-            other_versions: components["schemas"]["VersionCounts"][];
+            /** @description Other versions of the study that have sessions; their answers are not in here. */
+            other_versions: components["schemas"]["PooledVersion"][];
             paper?: components["schemas"]["Replication"] | null;
             /** @description How many people take part. */
             participants: components["schemas"]["Participants"];
+            /** @description The versions whose answers are in here, the one above first: others only where somebody named them. */
+            pooled: components["schemas"]["PooledVersion"][];
             /** @description The question over every pair. */
             question: string;
             scale_with_excluded?: components["schemas"]["ScaleIntervals"] | null;
@@ -1571,57 +2096,82 @@ export interface components {
             study: string;
             /** @description Study's title. */
             title: string;
-            /** @description Version that was asked for. */
+            /** @description Version of the study that this is of: SHA-256 of its design and of the pixels that it shows. */
             version: string;
-            /** @description The versions whose answers are in, the named one first. */
-            pooled: components["schemas"]["VersionCounts"][];
-            different_stimuli: components["schemas"]["DifferentStimulus"][];
         };
-        /** @description Results of a study. */
+        /** @description Results of one version of a study, or of several pooled by name. */
         StudyResults: {
-            study: string;
-            title: string;
-            /** @description Version that was asked for. */
-            version: string;
-            /** @description The versions whose answers are in, the named one first. */
-            pooled: components["schemas"]["VersionCounts"][];
-            different_stimuli: components["schemas"]["DifferentStimulus"][];
-            other_versions: components["schemas"]["VersionCounts"][];
-            participants: components["schemas"]["Participants"];
-            excluded: components["schemas"]["Excluded"][];
+            /** @description The paper's test for each block, without the excluded. */
             blocks: components["schemas"]["BlockSummary"][];
+            /** @description The same with everybody; null when nobody is excluded. */
             blocks_with_excluded?: components["schemas"]["BlockSummary"][] | null;
+            /** @description What the pooled versions do not show alike. */
+            different_stimuli: components["schemas"]["DifferentStimulus"][];
+            /** @description Who is left out by the study's rules of screening, and why. */
+            excluded: components["schemas"]["Excluded"][];
+            /** @description Other versions of the study that have sessions; their answers are not in these results. */
+            other_versions: components["schemas"]["PooledVersion"][];
+            /** @description How many people take part. */
+            participants: components["schemas"]["Participants"];
+            /** @description The versions whose answers are in, the one above first. */
+            pooled: components["schemas"]["PooledVersion"][];
             scale?: components["schemas"]["Scale"] | null;
+            /** @description Why there is no scale. */
             scale_note?: string | null;
+            /** @description What was shown, with how it was made and its measured error. */
             stimuli: components["schemas"]["Stimulus"][];
-        };
-        /** @description One study in the list. */
-        StudySummary: {
-            id: string;
+            /** @description Study's id. */
+            study: string;
+            /** @description Study's title. */
             title: string;
-            version?: string | null;
-            file_hash: string;
-            /** @enum {string} */
-            status: "ready" | "preparing" | "failed";
-            progress?: components["schemas"]["Progress"] | null;
-            reason?: string | null;
-            /** Format: int64 */
-            most_trials: number;
-            participants: components["schemas"]["Participants"];
-        };
-        /** @description One version of a study: a definition with its stimuli, as it was served. */
-        StudyVersion: {
+            /** @description Version of the study that these results are of. */
             version: string;
-            design_hash: string;
-            title: string;
-            is_current: boolean;
-            first_served_at: string;
-            last_served_at: string;
+        };
+        /** @description Whether participants can come. */
+        StudyStatus: "ready" | "preparing" | "failed";
+        /** @description A study as the researchers' list has it. */
+        StudySummary: {
+            /** @description SHA-256 of what the study file says. */
+            file_hash: string;
+            /** @description Its id, as in addresses. */
+            id: string;
+            /** @description Most trials that a participant sees. */
+            most_trials: number;
+            /** @description How many people take part in the version that is served. */
             participants: components["schemas"]["Participants"];
-            /** Format: int64 */
+            progress: components["schemas"]["Progress"] | null;
+            /** @description Of a study that failed: why. */
+            reason: string | null;
+            /** @description Whether participants can come. */
+            status: components["schemas"]["StudyStatus"];
+            /** @description Title. */
+            title: string;
+            /** @description The version that is served; null while its stimuli are not all made. */
+            version: string | null;
+        };
+        /** @description A version of a study: what was asked and what was shown. */
+        StudyVersion: {
+            /**
+             * Format: int64
+             * @description Answers to it.
+             */
             answers: number;
-            /** Format: int64 */
+            /** @description Hash of its definition alone. */
+            design_hash: string;
+            /** @description When it was first served, ISO-8601 UTC. */
+            first_served_at: string;
+            /** @description Whether it is the one that is served. */
+            is_current: boolean;
+            /** @description When it was last loaded to be served, ISO-8601 UTC. */
+            last_served_at: string;
+            /** @description How many people took part in it. */
+            participants: components["schemas"]["Participants"];
+            /** @description Stimuli that it shows. */
             stimuli: number;
+            /** @description Title at the time. */
+            title: string;
+            /** @description Its hash. */
+            version: string;
         };
         /** @description A one-sample or paired t-test that is planned. */
         TPlan: {
@@ -1646,43 +2196,106 @@ export interface components {
              */
             power: number;
         };
-        /** @description What a one-sample (or paired) t-test says. */
+        /** @description A two-tailed one-sample t-test of a table of counts; a number that is not defined is `None` and the note says why. */
         TTest: {
             /**
              * Format: double
-             * @description Degrees of freedom, n − 1.
+             * @description n − 1.
              */
-            df: number;
+            df?: number | null;
             /**
              * Format: double
-             * @description Their mean (the mean difference), in the units of the values.
+             * @description Their mean.
              */
-            mean: number;
-            /**
-             * Format: double
-             * @description The mean under the null hypothesis.
-             */
-            mu: number;
+            mean?: number | null;
             /**
              * Format: int64
-             * @description How many values (pairs).
+             * @description Observations.
              */
             n: number;
+            /** @description Why a number is missing. */
+            note?: string | null;
             /**
              * Format: double
-             * @description Two-sided p-value, P(|T| ≥ |t|) under the null hypothesis; never 0 while it is above 5e-324.
+             * @description Two-sided p.
              */
-            p: number;
+            p?: number | null;
             /**
              * Format: double
-             * @description Their standard deviation, n − 1 in the denominator.
+             * @description Sample standard deviation (n − 1).
              */
-            sd: number;
+            sd?: number | null;
             /**
              * Format: double
              * @description (mean − mu) / (sd / √n).
              */
-            t: number;
+            t?: number | null;
+        };
+        /** @description What every page says of how a trial was taken. A stimulus pixel is one of the picture, a device pixel one of the display, a CSS pixel one of the page. */
+        Taken: {
+            /**
+             * Format: double
+             * @description Width at which each stimulus stood, pinch zoom included: its width in pixels × scale / device_pixel_ratio.
+             */
+            css_width_px?: number | null;
+            /**
+             * Format: double
+             * @description Device pixels per CSS pixel.
+             */
+            device_pixel_ratio?: number | null;
+            /** @description Of animations: how each was played, by role. */
+            frames?: {
+                [key: string]: components["schemas"]["FrameLog"];
+            } | null;
+            /**
+             * Format: double
+             * @description How long the page was hidden during the trial.
+             */
+            hidden_ms?: number | null;
+            input?: components["schemas"]["Input"] | null;
+            /**
+             * Format: double
+             * @description The shortest time for which any of the trial's stimuli was in view before the answer.
+             */
+            min_visible_ms?: number | null;
+            /**
+             * Format: double
+             * @description When that frame was shown, by the page's own clock.
+             */
+            onset?: number | null;
+            /** @description Version of that plugin. */
+            plugin_version?: string | null;
+            /**
+             * Format: double
+             * @description Measured refresh rate of the display; empty where it could not be measured.
+             */
+            refresh_hz?: number | null;
+            /**
+             * Format: int32
+             * @description How often the page had been reloaded.
+             */
+            reload_count?: number | null;
+            /**
+             * Format: double
+             * @description From the first frame at which an answer was possible (the stimuli in view, or the question after two intervals) to the answer.
+             */
+            rt: number;
+            /**
+             * Format: double
+             * @description Device pixels per stimulus pixel, pinch zoom included; 1 is native. Shown on device_pixel_ratio × css_width_px device pixels.
+             */
+            scale?: number | null;
+            /**
+             * Format: double
+             * @description From the start of the page's session to the answer.
+             */
+            time_elapsed?: number | null;
+            /** @description When the browser had the answer, by its own clock, ISO 8601. */
+            timestamp?: string | null;
+            /** @description Plugin that showed the trial. */
+            trial_type?: string | null;
+            /** @description Width and height of the window's inside, CSS px. */
+            viewport?: components["schemas"]["Length"][] | null;
         };
         /** @description What participants read; each text is a list of plain paragraphs. */
         Texts: {
@@ -1720,6 +2333,32 @@ export interface components {
              */
             share: number;
         };
+        /** @description What a staircase does with the answers. */
+        Track: {
+            /**
+             * @description Harder after `down` correct answers in a row, easier after each wrong one: converges where P(correct) = .5^(1/down) (Levitt 1971):
+             *     .5, .707, .794, .841 for 1, 2, 3, 4.
+             */
+            transformed: {
+                /**
+                 * Format: int32
+                 * @description Correct answers in a row for one step down, 1 to 10.
+                 */
+                down: number;
+            };
+        } | {
+            /**
+             * @description Harder by a step after each correct answer, easier by step × p/(1 − p) after each wrong one: converges where P(correct) = p, any p
+             *     (Kaernbach 1991).
+             */
+            weighted: {
+                /**
+                 * Format: double
+                 * @description The proportion to track, in (0, 1).
+                 */
+                target: number;
+            };
+        };
         /** @description Circular triads (a over b, b over c, c over a), summed over observers. */
         Triads: {
             /**
@@ -1739,212 +2378,85 @@ export interface components {
              */
             triads: number;
         };
-        /** @description One trial of a session's plan. */
+        /** @description One trial as the page needs it; its conditions stay on the server. */
         Trial: {
-            /** Format: int64 */
-            trial_index: number;
-            trial: components["schemas"]["TrialKind"];
-            /** Format: int64 */
+            /** @description Whether its answer is stored. */
+            answered: boolean;
+            /**
+             * Format: int32
+             * @description Place of its block in the study, from 0.
+             */
             block_index: number;
-            /** Format: int64 */
+            /**
+             * Format: int32
+             * @description Height of its stimuli in pixels.
+             */
+            height: number;
+            /**
+             * Format: int32
+             * @description Place of its item in the block's file order, from 0.
+             */
             item_index: number;
+            /** @description Stills or animations. */
             kind: components["schemas"]["Kind"];
-            /** @description Role → stimulus: left and right, or first and second. */
+            settings: components["schemas"]["Intervals"] | null;
+            /** @description What is shown, by role: `left` and `right`, or `first` and `second`. */
             shown: {
                 [key: string]: components["schemas"]["StimulusRef"];
             };
-            /** @description Settings of the trial's kind. */
-            settings?: components["schemas"]["TwoIntervalSettings"] | null;
+            /** @description How it is shown and asked. */
+            trial: components["schemas"]["TrialName"];
             /**
-             * Format: int64
-             * @description Stimulus pixels.
+             * Format: int32
+             * @description Place in the session, from 0.
+             */
+            trial_index: number;
+            /**
+             * Format: int32
+             * @description Width of its stimuli in pixels.
              */
             width: number;
-            /**
-             * Format: int64
-             * @description Stimulus pixels.
-             */
-            height: number;
-            answered: boolean;
         };
-        /**
-         * @description How a trial shows its stimuli and asks.
-         * @enum {string}
-         */
-        TrialKind: "two-alternative" | "two-interval";
-        /** @description A choice between two stimuli shown at once. */
-        TwoAlternativeAnswer: {
+        /** @description How a trial asks, with the settings of its kind: a block's `trial` and `[blocks.trial_settings]`. */
+        TrialKind: {
             /** @enum {string} */
-            choice: "left" | "right";
-            /**
-             * Format: double
-             * @description From the first painted frame to the choice, ms.
-             */
-            rt: number;
-            /**
-             * Format: double
-             * @description `performance.now()` of that frame, ms.
-             */
-            onset: number;
-            /** Format: double */
-            time_elapsed?: number;
-            trial_type?: string;
-            plugin_version?: string;
+            trial: "two-alternative";
+        } | {
             /** @enum {string} */
-            input?: "mouse" | "touch" | "pen" | "keyboard";
-            /**
-             * Format: double
-             * @description Device pixels per stimulus pixel, pinch zoom included; 1 is native.
-             */
-            scale?: number;
-            /**
-             * Format: double
-             * @description Width at which a stimulus stood, CSS px, pinch zoom included.
-             */
-            css_width_px?: number;
-            /** Format: double */
-            device_pixel_ratio?: number;
-            /** @description CSS px, width and height. */
-            viewport?: number[];
-            /** Format: double */
-            refresh_hz?: number | null;
-            /** Format: double */
-            hidden_ms?: number;
-            /**
-             * Format: double
-             * @description The shortest time that any of the stimuli was visible before the answer, ms.
-             */
-            min_visible_ms?: number;
-            /** Format: int64 */
-            reload_count?: number;
-            /** @description ISO 8601. */
-            timestamp?: string;
-            frames?: {
-                [key: string]: components["schemas"]["FrameLog"];
-            };
-            /** @enum {string} */
-            arrangement?: "side" | "stack";
+            trial: "two-interval";
+            /** @description One picture, then another; which one? */
+            trial_settings: components["schemas"]["Intervals"];
         };
-        /** @description A choice between two stimuli shown one after the other. */
-        TwoIntervalAnswer: {
-            /** @enum {string} */
-            choice: "first" | "second";
-            /**
-             * Format: double
-             * @description From the first painted frame to the choice, ms.
-             */
-            rt: number;
-            /**
-             * Format: double
-             * @description `performance.now()` of that frame, ms.
-             */
-            onset: number;
-            /** Format: double */
-            time_elapsed?: number;
-            trial_type?: string;
-            plugin_version?: string;
-            /** @enum {string} */
-            input?: "mouse" | "touch" | "pen" | "keyboard";
-            /**
-             * Format: double
-             * @description Device pixels per stimulus pixel, pinch zoom included; 1 is native.
-             */
-            scale?: number;
-            /**
-             * Format: double
-             * @description Width at which a stimulus stood, CSS px, pinch zoom included.
-             */
-            css_width_px?: number;
-            /** Format: double */
-            device_pixel_ratio?: number;
-            /** @description CSS px, width and height. */
-            viewport?: number[];
-            /** Format: double */
-            refresh_hz?: number | null;
-            /** Format: double */
-            hidden_ms?: number;
-            /**
-             * Format: double
-             * @description The shortest time that any of the stimuli was visible before the answer, ms.
-             */
-            min_visible_ms?: number;
-            /** Format: int64 */
-            reload_count?: number;
-            /** @description ISO 8601. */
-            timestamp?: string;
-            frames?: {
-                [key: string]: components["schemas"]["FrameLog"];
-            };
-            /** @description Durations as the study asks for them, ms. */
-            requested_ms?: {
-                /** Format: double */
-                fixation: number;
-                /** Format: double */
-                first: number;
-                /** Format: double */
-                mask: number;
-                /** Format: double */
-                second: number;
-            };
-            /** @description Durations as shown, in frames of the measured refresh. */
-            shown_frames?: {
-                /** Format: int64 */
-                fixation: number;
-                /** Format: int64 */
-                first: number;
-                /** Format: int64 */
-                mask: number;
-                /** Format: int64 */
-                second: number;
-            };
-            /** @description Durations as shown, measured between frame times, ms. */
-            shown_ms?: {
-                /** Format: double */
-                fixation: number;
-                /** Format: double */
-                first: number;
-                /** Format: double */
-                mask: number;
-                /** Format: double */
-                second: number;
-            };
-            /**
-             * Format: int64
-             * @description How often the trial began again because the page was hidden during an interval.
-             */
-            restarts?: number;
+        /** @description The names of the kinds of trials. */
+        TrialName: "two-alternative" | "two-interval";
+        /** @description What a page sends for a two-alternative trial. */
+        TwoAlternativeAnswer: components["schemas"]["Taken"] & {
+            arrangement?: components["schemas"]["Arrangement"] | null;
+            /** @description The picture chosen. */
+            choice: components["schemas"]["Side"];
         };
-        /** @description How long each step of a two-interval trial is asked to take, ms; 0 leaves out the fixation or the mask. */
-        TwoIntervalSettings: {
+        /** @description What a page sends for a two-interval trial. */
+        TwoIntervalAnswer: components["schemas"]["Taken"] & {
+            /** @description The interval chosen. */
+            choice: components["schemas"]["Which"];
+            requested_ms?: components["schemas"]["StepTimes"] | null;
             /**
-             * Format: double
-             * @description ms
+             * Format: int32
+             * @description How often the sequence began again because the page was hidden in the midst of it.
              */
-            fixation_ms: number;
-            /**
-             * Format: double
-             * @description ms
-             */
-            first_ms: number;
-            /**
-             * Format: double
-             * @description ms
-             */
-            mask_ms: number;
-            /**
-             * Format: double
-             * @description ms
-             */
-            second_ms: number;
+            restarts?: number | null;
+            shown_frames?: components["schemas"]["StepFrames"] | null;
+            shown_ms?: components["schemas"]["StepTimes"] | null;
         };
-        /** @description A version's part. */
-        VersionCounts: {
-            version: string;
-            /** Format: int64 */
-            sessions: number;
-            /** Format: int64 */
-            answers: number;
+        /** @description One page of the versions of a study. */
+        VersionList: {
+            /** @description The versions of a study on it. */
+            items: components["schemas"]["StudyVersion"][];
+            /** @description What to ask with for the next page; null on the last one. */
+            next_cursor: string | null;
         };
+        /** @description One of the two intervals. */
+        Which: "first" | "second";
     };
     responses: never;
     parameters: never;
@@ -1954,202 +2466,7 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
-    get_study: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                study: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Done. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Study"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    create_session: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                study: string;
-            };
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["NewSession"];
-            };
-        };
-        responses: {
-            /** @description Done. */
-            201: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["CreatedSession"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    get_session: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                session: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Done. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["SessionState"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    give_consent: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                session: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Done. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["SessionState"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    put_answer: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                session: string;
-                trial_index: string;
-            };
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["TwoAlternativeAnswer"] | components["schemas"]["TwoIntervalAnswer"];
-            };
-        };
-        responses: {
-            /** @description Done. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Acknowledgement"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    complete_session: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                session: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Done. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Completion"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    get_researcher: {
+    get_signed_in: {
         parameters: {
             query?: never;
             header?: never;
@@ -2158,22 +2475,37 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Done. */
+            /** @description A researcher. */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Researcher"];
+                    "application/json": components["schemas"]["SignedIn"];
                 };
             };
-            /** @description Refused. */
-            default: {
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
                 };
             };
         };
@@ -2187,24 +2519,103 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Credentials"];
+                "application/json": components["schemas"]["SignIn"];
             };
         };
         responses: {
-            /** @description Done. */
+            /** @description Signed in. */
             204: {
                 headers: {
+                    /** @description `kelir_session` */
+                    "Set-Cookie"?: string;
                     [name: string]: unknown;
                 };
                 content?: never;
             };
-            /** @description Refused. */
-            default: {
+            /** @description `bad_body`: The body could not be read. `bad_json`: The body is no JSON, or no JSON object. */
+            400: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "bad_body" | "bad_json";
+                    };
+                };
+            };
+            /** @description `wrong_password`: That is not the password. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "wrong_password";
+                    };
+                };
+            };
+            /** @description `too_large`: The body is larger than the address takes. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "too_large";
+                    };
+                };
+            };
+            /** @description `not_json`: The body is not sent as `application/json`. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_json";
+                    };
+                };
+            };
+            /** @description `invalid_field`: Fields of the body break their rules; `errors` names them all. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_field";
+                    };
+                };
+            };
+            /** @description `too_many_tries`: Too many wrong passwords; `Retry-After` says how long to wait. */
+            429: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "too_many_tries";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
                 };
             };
         };
@@ -2218,25 +2629,28 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Done. */
+            /** @description Signed out. */
             204: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content?: never;
             };
-            /** @description Refused. */
-            default: {
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
                 };
             };
         };
     };
-    list_studies: {
+    find_docs: {
         parameters: {
             query?: never;
             header?: never;
@@ -2245,122 +2659,28 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Done. */
-            200: {
+            /** @description The page is at `docs/`. */
+            308: {
                 headers: {
                     [name: string]: unknown;
                 };
-                content: {
-                    "application/json": components["schemas"]["Page_StudySummary"];
-                };
+                content?: never;
             };
-            /** @description Refused. */
-            default: {
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
                 };
             };
         };
     };
-    list_versions: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                study: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Done. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Page_StudyVersion"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    get_results: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                study: string;
-                version: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Done. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["StudyResults"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    get_report: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                study: string;
-                version: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Done. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["StudyReport"];
-                };
-            };
-            /** @description Refused. */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    get_paper: {
+    get_docs: {
         parameters: {
             query?: never;
             header?: never;
@@ -2369,7 +2689,103 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Done. */
+            /** @description A page without scripts. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": string;
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_docs_style: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A style sheet. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/css": string;
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_openapi: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The OpenAPI document. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": Record<string, never>;
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_taylor_cameron: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The tests, from the paper's own counts. */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -2378,13 +2794,1352 @@ export interface operations {
                     "application/json": components["schemas"]["Replication"];
                 };
             };
-            /** @description Refused. */
-            default: {
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_session: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The session's id. */
+                session: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The session. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    complete_session: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The session's id. */
+                session: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The end. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Completion"];
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `incomplete`: Trials have no answer yet: those in `missing`, or others that are still to be decided where `more` is true. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "incomplete";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    give_consent: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The session's id. */
+                session: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The session. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    put_answer: {
+        parameters: {
+            query?: {
+                /** @description Number of trials that the page knows: those from this index on are told. Absent: none are. */
+                known?: number;
+            };
+            header?: never;
+            path: {
+                /** @description The session's id. */
+                session: string;
+                /** @description The trial's index, in plain digits. */
+                trial_index: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Answer"];
+            };
+        };
+        responses: {
+            /** @description It is stored. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Acknowledgement"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `bad_body`: The body could not be read. `bad_json`: The body is no JSON, or no JSON object. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "bad_body" | "bad_json";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `no_consent`: An answer can be stored only after consent. `already_answered`: The trial has another answer already; `stored` is what stands. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "no_consent" | "already_answered";
+                    };
+                };
+            };
+            /** @description `too_large`: The body is larger than the address takes. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "too_large";
+                    };
+                };
+            };
+            /** @description `not_json`: The body is not sent as `application/json`. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_json";
+                    };
+                };
+            };
+            /** @description `invalid_field`: Fields of the body break their rules; `errors` names them all. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_field";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    list_studies: {
+        parameters: {
+            query?: {
+                /** @description Most items to answer with. */
+                limit?: number;
+                /** @description The `next_cursor` of the page before; opaque. */
+                cursor?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A page of the list. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StudyList"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_study: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The study. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Study"];
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `not_ready`: The study's images are still being made; `Retry-After` says when to ask again. `stimuli_failed`: The study's images could not be made. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_ready" | "stimuli_failed";
+                    };
+                };
+            };
+        };
+    };
+    create_session: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewSession"];
+            };
+        };
+        responses: {
+            /** @description The session. */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CreatedSession"];
+                };
+            };
+            /** @description `bad_body`: The body could not be read. `bad_json`: The body is no JSON, or no JSON object. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "bad_body" | "bad_json";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `too_large`: The body is larger than the address takes. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "too_large";
+                    };
+                };
+            };
+            /** @description `not_json`: The body is not sent as `application/json`. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_json";
+                    };
+                };
+            };
+            /** @description `invalid_field`: Fields of the body break their rules; `errors` names them all. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_field";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `not_ready`: The study's images are still being made; `Retry-After` says when to ask again. `stimuli_failed`: The study's images could not be made. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_ready" | "stimuli_failed";
+                    };
+                };
+            };
+        };
+    };
+    list_versions: {
+        parameters: {
+            query?: {
+                /** @description Most items to answer with. */
+                limit?: number;
+                /** @description The `next_cursor` of the page before; opaque. */
+                cursor?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A page of the list. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VersionList"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_codebook_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_codebook: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The codebook. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Codebook"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_pairs_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_report: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The report. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StudyReport"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_report_html: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_report_md: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/markdown": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_responses_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_results: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The results. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StudyResults"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_health: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description `ok` */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": string;
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_stimulus: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description SHA-256 of its bytes, 64 hex digits. */
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The bytes. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.kelir.animation+json": number[];
+                    "image/jpeg": number[];
+                    "image/png": number[];
+                };
+            };
+            /** @description `If-None-Match` names them: the browser has them already. */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
                 };
             };
         };

@@ -163,6 +163,11 @@ impl Client {
         Client { server, folder, drawer }
     }
 
+    /// The version that is served.
+    pub async fn version(&self) -> String {
+        self.server.store().study_versions("shadow-puppets").await.unwrap()[0].version.clone()
+    }
+
     pub async fn send(&self, request: Request<Body>) -> Answer {
         send(self.server.router(), request).await
     }

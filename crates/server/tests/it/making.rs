@@ -38,8 +38,8 @@ async fn nothing_is_drawn_twice_and_damage_is_drawn_again() {
     again.make_stimuli(&|_| {}).await.unwrap();
     assert_eq!(drawn(), 6, "a restart draws nothing");
 
-    let hash = again.store().study_versions("shadow-puppets").await.unwrap()[0].config_hash.clone();
-    let still = again.store().study_stimuli("shadow-puppets", &hash).await.unwrap()[0].sha256.clone();
+    let hash = again.store().study_versions("shadow-puppets").await.unwrap()[0].version.clone();
+    let still = again.store().version_stimuli("shadow-puppets", &hash).await.unwrap()[0].sha256.clone();
     std::fs::write(client.folder.path().join("stimuli").join(&still[..2]).join(&still), b"rubbish").unwrap();
     let text = client.get(&format!("/stimuli/{still}")).await;
     assert_eq!(text.status.as_u16(), 500, "damaged bytes are never shown");
@@ -85,12 +85,7 @@ async fn progress_counts_up_to_the_end() {
 #[tokio::test(flavor = "multi_thread")]
 async fn pictures_of_ones_own_take_the_place_of_drawn_ones() {
     let client = Client::unready().await;
-    let photo = |size: u32| {
-        let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec();
-        png.extend(size.to_be_bytes());
-        png.extend(36u32.to_be_bytes());
-        png
-    };
+    let photo = |width: u32| crate::placeholder::disc([width, 36], 7, 0.0, true);
     let folder = client.folder.path().join("studies/photos");
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("a.png"), photo(64)).unwrap();
@@ -112,6 +107,11 @@ async fn pictures_of_ones_own_take_the_place_of_drawn_ones() {
     let wrong_size = try_with("a.png", "b.png").await.unwrap_err();
     assert!(wrong_size.contains("65 × 36") && wrong_size.contains("64 × 36"), "{wrong_size}");
     assert!(try_with("a.png", "c.png").await.unwrap_err().contains("neither PNG nor JPEG"));
+    // A head that is right and a body that is not: nobody could be shown it.
+    let whole = photo(64);
+    std::fs::write(folder.join("d.png"), &whole[..whole.len() / 2]).unwrap();
+    let cut = try_with("a.png", "d.png").await.unwrap_err();
+    assert!(cut.contains("b (mc)") && cut.contains("no PNG or JPEG"), "{cut}");
     let missing = try_with("a.png", "none.png").await.unwrap_err();
     assert!(missing.contains("conditions.mc.files.b"), "{missing}");
 }
@@ -145,11 +145,11 @@ async fn the_renderer_makes_what_the_study_asks_for() {
     let server = Server::open(&config(folder.path(), Arc::new(RenderMaker::default()))).await.unwrap();
     server.make_stimuli(&|_| {}).await.unwrap();
     let version = server.store().study_versions("shadow-puppets").await.unwrap().remove(0);
-    let made = server.store().study_stimuli("shadow-puppets", &version.config_hash).await.unwrap();
+    let made = server.store().version_stimuli("shadow-puppets", &version.version).await.unwrap();
     assert_eq!(made.len(), 8);
     let of = |pair: &str, condition: &str| {
         made.iter()
-            .find(|s| s.pair == pair && s.condition == condition)
+            .find(|s| s.item == pair && s.condition == condition)
             .unwrap_or_else(|| panic!("{pair} {condition}"))
     };
     // PA is measured against the study's MC: one plane, so the two differ by the model error and MC's noise alone.
@@ -165,8 +165,8 @@ async fn the_renderer_makes_what_the_study_asks_for() {
         ("d", "photo", "image/jpeg"),
     ];
     for (pair, condition, media_type) in types {
-        let (info, bytes) = server.store().stimulus(&of(pair, condition).sha256).await.unwrap().unwrap();
-        assert_eq!(info.media_type, media_type);
+        let (found, bytes) = server.store().stimulus(&of(pair, condition).sha256).await.unwrap().unwrap();
+        assert_eq!(found, media_type);
         // Nothing in the bytes says how they were made.
         for word in ["kelir", "technique", "tEXt", "Monte"] {
             assert!(

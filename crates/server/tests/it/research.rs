@@ -1,8 +1,8 @@
 use crate::client::{Client, PASSWORD, config};
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
-use kelir_server::Server;
-use serde_json::json;
+use kelir_server::{Server, VersionRef, With};
+use serde_json::{Value, json};
 
 #[tokio::test(flavor = "multi_thread")]
 async fn signing_in_and_out() {
@@ -60,16 +60,20 @@ async fn results_are_what_the_answers_add_up_to() {
 
     let results = client.research(&cookie, path).await.json();
     assert_eq!(results["participants"], json!({ "started": 4, "in_progress": 1, "completed": 3 }));
-    let hash = results["config_hash"].as_str().unwrap();
+    let hash = results["version"].as_str().unwrap();
     // The expected numbers come from the rows by the definition of t.
-    let rows = client.server.store().responses("shadow-puppets", hash).await.unwrap();
+    let rows = client.server.store().answer_rows("shadow-puppets", &[hash.to_owned()]).await.unwrap();
     for (block, pairs) in [("stills", 2), ("loop", 1)] {
         let mut by_session = std::collections::BTreeMap::<&str, Vec<f64>>::new();
-        for (row, _) in rows.iter().filter(|(row, _)| row.block_id == block) {
-            by_session
-                .entry(&row.session_id)
-                .or_default()
-                .push(f64::from(u8::from(row.chosen_condition == "pa")));
+        let of_block = |item: &str| if block == "loop" { item == "c" } else { item != "c" };
+        for row in &rows {
+            let answer: Value = serde_json::from_str(row.answer.as_ref().unwrap()).unwrap();
+            let shown = serde_json::to_value(&row.shown).unwrap();
+            let chosen = &shown[answer["choice"].as_str().unwrap()];
+            if of_block(chosen["item"].as_str().unwrap()) {
+                let hit = f64::from(u8::from(chosen["condition"] == "pa"));
+                by_session.entry(&row.session_id).or_default().push(hit);
+            }
         }
         let counts: Vec<f64> =
             by_session.values().filter(|c| c.len() == pairs).map(|c| c.iter().sum()).collect();
@@ -90,12 +94,16 @@ async fn results_are_what_the_answers_add_up_to() {
     }
     assert_eq!(results["stimuli"].as_array().unwrap().len(), 6);
 
-    let offline = kelir_server::results::of_study(client.folder.path(), "shadow-puppets").await.unwrap();
-    assert_eq!(serde_json::to_value(&offline).unwrap(), results, "the command reads the same");
-    assert!(kelir_server::results::of_study(client.folder.path(), "nobody").await.is_err());
-    assert!(
-        kelir_server::results::of_study(&client.folder.path().join("none"), "shadow-puppets").await.is_err()
-    );
+    let offline = async |folder: &std::path::Path, study: &str| {
+        let (version, with) = (VersionRef::Current, With::default());
+        kelir_server::results::report_of_study(folder, study, &version, &with).await
+    };
+    let report = offline(client.folder.path(), "shadow-puppets").await.unwrap();
+    let summaries: Vec<_> =
+        report.report.blocks.iter().map(|b| serde_json::to_value(&b.summary).unwrap()).collect();
+    assert_eq!(json!(summaries), results["blocks"], "the command reads the same");
+    assert!(offline(client.folder.path(), "nobody").await.is_err());
+    assert!(offline(&client.folder.path().join("none"), "shadow-puppets").await.is_err());
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -222,7 +230,7 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
     let path = "/api/v1/studies/shadow-puppets/versions/current";
     let results = client.research(&cookie, &format!("{path}/results")).await.json();
     let report = client.research(&cookie, &format!("{path}/report")).await.json();
-    for key in ["study", "config_hash", "participants", "stimuli"] {
+    for key in ["study", "version", "pooled", "participants", "stimuli"] {
         assert_eq!(report[key], results[key], "{key}");
     }
     for (block, short) in
@@ -233,9 +241,12 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
         }
         assert_eq!(block["analysis"]["proportion"]["trials"], 4 * short["items"].as_u64().unwrap());
     }
-    assert_eq!((&report["chain"]["rows"], &report["chain"]["broken"]), (&json!(12), &json!(null)));
+    assert_eq!((&report["chain"]["rows"], &report["chain"]["faults"]), (&json!(12), &json!([])));
+    let (version, with) = (VersionRef::Current, With::default());
     let offline =
-        kelir_server::results::report_of_study(client.folder.path(), "shadow-puppets").await.unwrap();
+        kelir_server::results::report_of_study(client.folder.path(), "shadow-puppets", &version, &with)
+            .await
+            .unwrap();
     assert!(serde_json::to_value(&offline).unwrap() == report, "the command says the same");
 
     // The same as files: researchers only, to be kept, and whole in themselves.
@@ -250,7 +261,7 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
         let name = format!("attachment; filename=\"shadow-puppets-report.{ending}\"");
         assert_eq!(file.header("content-disposition"), name);
         let text = file.text();
-        assert!(text.starts_with(begins) && text.contains(report["config_hash"].as_str().unwrap()), "{text}");
+        assert!(text.starts_with(begins) && text.contains(report["version"].as_str().unwrap()), "{text}");
         let t = report["blocks"][0]["t"].as_f64().unwrap();
         let shown =
             if ending == "html" { format!("<data value=\"{t}\">") } else { format!("{:.4}", t.abs()) };
@@ -283,6 +294,7 @@ async fn a_hostile_study_file_writes_no_markup_into_its_report() {
     std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
     let drawer = std::sync::Arc::<crate::placeholder::Placeholder>::default();
     let server = Server::open(&config(folder.path(), drawer.clone())).await.unwrap();
+    server.make_stimuli(&|_| {}).await.unwrap();
     let client = Client { server, folder, drawer };
     let cookie = client.sign_in().await;
     for ending in ["html", "md"] {

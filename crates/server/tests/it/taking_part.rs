@@ -1,6 +1,7 @@
 use crate::client::{Client, body_of};
 use axum::http::StatusCode;
 use kelir_server::Server;
+use kelir_study::trials::Role;
 use serde_json::{Value, json};
 
 #[tokio::test(flavor = "multi_thread")]
@@ -112,13 +113,14 @@ async fn completed_participants_balance_the_sides_and_a_freed_slot_is_taken_agai
     for who in 0..4 {
         client.take(json!({ "id": format!("p{who}") }), ["left", "left", "right"]).await;
     }
-    let hash = client.server.store().study_versions("shadow-puppets").await.unwrap()[0].config_hash.clone();
-    let rows = client.server.store().responses("shadow-puppets", &hash).await.unwrap();
-    for pair in ["a", "b", "c"] {
-        let left = rows.iter().filter(|(r, _)| r.pair_id == pair && r.left_condition == "pa").count();
-        assert_eq!(left, 2, "pair {pair}");
+    let hash = client.server.store().study_versions("shadow-puppets").await.unwrap()[0].version.clone();
+    let rows = client.server.store().answer_rows("shadow-puppets", &[hash.clone()]).await.unwrap();
+    for item in ["a", "b", "c"] {
+        let left =
+            rows.iter().map(|row| &row.shown[&Role::Left]).filter(|s| s.item == item && s.condition == "pa");
+        assert_eq!(left.count(), 2, "item {item}");
     }
-    let sessions = client.server.store().sessions("shadow-puppets", &hash).await.unwrap();
+    let sessions = client.server.store().sessions("shadow-puppets", &[hash]).await.unwrap();
     assert_eq!(sessions.iter().map(|s| s.slot).collect::<Vec<_>>(), [0, 1, 2, 3]);
     assert_eq!(sessions[0].subject_id, "p0");
 }
@@ -137,4 +139,137 @@ async fn a_session_goes_on_with_its_own_version_after_the_study_has_changed() {
     assert_eq!(after["trials"][1]["shown"], before["trials"][1]["shown"]);
     assert_eq!(after["trials"][1]["width"], 64);
     assert_eq!(restarted.choose(&path, &token, 1, "left").await.status, StatusCode::OK);
+}
+
+/// The small study with an adaptive two-interval block over seven levels before its animation.
+fn adaptive(procedure: &str) -> String {
+    let levels: Vec<String> = (0..7)
+        .map(|i| format!("{{ id = \"l{i}\", scene = \"../scenes/near.toml\", level = {i} }}"))
+        .collect();
+    let block = format!(
+        "[[blocks]]\nid = \"levels\"\ntitle = \"Levels\"\nkind = \"still\"\ntrial = \"two-interval\"\nconditions = [\"pa\", \"mc\"]\n\
+         target = \"pa\"\nitems = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"level\"\n\
+         [blocks.adaptive]\n{procedure}\n[[blocks]]\nid = \"loop\"",
+        levels.join(", ")
+    );
+    crate::client::STUDY.replace("[[blocks]]\nid = \"loop\"", &block)
+}
+
+const STAIRCASE: &str = "procedure = \"staircase\"\ntrials = 20\nreversals = 4\ndown = 2";
+
+/// The condition that a role of a decided trial shows; only the database knows.
+async fn conditions(client: &Client, session: &str) -> Vec<Vec<String>> {
+    let trials = client.server.store().trials(session).await.unwrap();
+    trials
+        .iter()
+        .map(|t| t.trial.shown.values().map(|placed| placed.condition.to_string()).collect())
+        .collect()
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_adaptive_block_is_decided_from_the_stored_answers_and_a_restart_changes_nothing() {
+    let folder = crate::client::folder();
+    std::fs::write(folder.path().join("studies/shadow-puppets.toml"), adaptive(STAIRCASE)).unwrap();
+    let drawer = std::sync::Arc::new(crate::placeholder::Placeholder::default());
+    let config = crate::client::config(folder.path(), drawer.clone());
+    let server = Server::open(&config).await.unwrap();
+    server.make_stimuli(&|_| {}).await.unwrap();
+    let mut client = Client { server, folder, drawer };
+    let (path, token, state) = client.join(json!({})).await;
+    let session = state["session_id"].as_str().unwrap().to_owned();
+    assert_eq!((state["trials"].as_array().unwrap().len(), &state["more"]), (3, &json!(true)));
+    assert_eq!(state["most_trials"], 2 + 20 + 1);
+    assert_eq!(state["trials"][2]["trial"], "two-interval");
+    assert_eq!(state["trials"][2]["settings"]["mask_ms"], 250.0);
+    let mut known = 3;
+    let mut trial = 0;
+    loop {
+        // The target always, then never: down two levels at a time, up one.
+        let shown = conditions(&client, &session).await;
+        let first = shown[trial][0] == "pa";
+        let wants_target = trial < 9;
+        let state = client.call("GET", &path, &token, &Value::Null).await.json();
+        let two_interval = state["trials"][trial]["trial"] == "two-interval";
+        let choice = match (two_interval, first == wants_target) {
+            (true, true) => "first",
+            (true, false) => "second",
+            (false, true) => "left",
+            (false, false) => "right",
+        };
+        let answer = client
+            .call("PUT", &format!("{path}/trials/{trial}?known={known}"), &token, &body_of(choice))
+            .await;
+        assert_eq!(answer.status, StatusCode::OK, "{}", answer.text());
+        let ack = answer.json();
+        // What the acknowledgement tells is what the state tells, and a resend tells it again.
+        let again = client
+            .call("PUT", &format!("{path}/trials/{trial}?known={known}"), &token, &body_of(choice))
+            .await;
+        assert_eq!(again.json(), ack);
+        known += ack["trials"].as_array().unwrap().len();
+        if trial == 6 {
+            let early = client.call("POST", &format!("{path}/completion"), &token, &Value::Null).await;
+            assert_eq!((early.status, &early.json()["more"]), (StatusCode::CONFLICT, &json!(true)));
+            let server = Server::open(&config).await.unwrap();
+            client = Client { server, ..client };
+        }
+        let state = client.call("GET", &path, &token, &Value::Null).await.json();
+        assert_eq!(state["trials"].as_array().unwrap().len(), known);
+        if state["next_trial"].is_null() && state["more"] == json!(false) {
+            break;
+        }
+        trial += 1;
+    }
+    let trials = client.server.store().trials(&session).await.unwrap();
+    let levels: Vec<&str> =
+        trials.iter().filter(|t| t.trial.block_id == "levels").map(|t| t.trial.item_id.as_str()).collect();
+    // Two down, one up by 4, 2, then 1 from the easiest (l6), the target in the first seven of them; worked out by hand.
+    assert_eq!(levels[..8], ["l6", "l6", "l2", "l2", "l0", "l0", "l0", "l0"], "{levels:?}");
+    assert_eq!(trials.last().unwrap().trial.block_id, "loop", "the block after it follows");
+    let done = client.call("POST", &format!("{path}/completion"), &token, &Value::Null).await;
+    assert_eq!(done.status, StatusCode::OK, "{}", done.text());
+    assert!(client.server.store().verify_chain("shadow-puppets").await.unwrap().faults.is_empty());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_answer_is_held_to_its_own_kind() {
+    let client = Client::ready().await;
+    let (path, token, _) = client.join(json!({})).await;
+    let refused = client.choose(&path, &token, 0, "first").await;
+    assert_eq!(refused.status, StatusCode::UNPROCESSABLE_ENTITY);
+    assert_eq!(refused.json()["errors"][0]["pointer"], "/choice");
+    let other = client.choose(&path, &token, 0, "left").await;
+    assert_eq!(other.status, StatusCode::OK);
+    let mut slower = body_of("left");
+    slower["rt"] = json!(900.0);
+    let told = client.call("PUT", &format!("{path}/trials/0"), &token, &slower).await.json();
+    assert_eq!(told["stored"]["answer"], json!({ "choice": "left", "rt_ms": 812.5 }));
+    assert_eq!(told["stored"]["payload"]["plugin_version"], "0.1.0");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_stimulus_that_is_missing_is_an_error_and_never_an_empty_hash() {
+    let client = Client::ready().await;
+    let (path, token, state) = client.join(json!({})).await;
+    // Somebody removes a picture of the version behind the server's back; a session of it that goes on after a restart finds out.
+    let trials = client.server.store().trials(state["session_id"].as_str().unwrap()).await.unwrap();
+    for trial in &trials {
+        for (role, placed) in &trial.trial.shown {
+            let hashes = &trial.stimuli[role];
+            assert!(hashes.sha256.len() == 64 && hashes.pixels_sha256.len() == 64, "{placed:?}");
+        }
+    }
+    let made: kelir_store::StudyStimulus = client
+        .server
+        .store()
+        .version_stimuli("shadow-puppets", &client.version().await)
+        .await
+        .unwrap()
+        .remove(0);
+    let mut lacking = trials[0].clone();
+    lacking.stimuli.clear();
+    let error = lacking.shown().unwrap_err().to_string();
+    assert!(error.contains("has no stimulus of condition"), "{error}");
+    assert_eq!(made.sha256.len(), 64);
+    assert_eq!(client.choose(&path, &token, 0, "left").await.status, StatusCode::OK);
 }

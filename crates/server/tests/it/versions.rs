@@ -14,7 +14,7 @@ async fn a_version_is_named_by_current_by_its_hash_or_by_the_hashs_beginning() {
         client.research(&cookie, &format!("{path}/{version}/results{query}")).await
     };
     let current = results("current", "").await.json();
-    let hash = current["config_hash"].as_str().unwrap();
+    let hash = current["version"].as_str().unwrap();
     let with_itself = format!("?with={}", &hash[..9]);
     for (version, query) in
         [(hash, ""), (&hash[..8], ""), (&hash[..63], "?with=all"), (hash, with_itself.as_str())]

@@ -11,7 +11,7 @@ mod two_interval;
 
 pub use taken::{FrameLog, Input, Length, Taken};
 pub use two_alternative::{Arrangement, Side, TwoAlternativeAnswer};
-pub use two_interval::{Interval, Intervals, StepFrames, StepTimes, TwoIntervalAnswer};
+pub use two_interval::{Intervals, StepFrames, StepTimes, TwoIntervalAnswer, Which};
 
 use crate::fields::Fields;
 use crate::schema::{FieldError, Record, worded};

@@ -36,7 +36,7 @@ impl Default for Intervals {
 
 worded! {
     /// One of the two intervals.
-    pub enum Interval {
+    pub enum Which {
         /// the one that came first
         First = "first",
         /// the one that came second
@@ -78,7 +78,7 @@ pub struct StepFrames {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TwoIntervalAnswer {
     /// The interval chosen.
-    pub choice: Interval,
+    pub choice: Which,
     /// How long each step was asked to last: fixation, first, mask, second.
     #[serde(default)]
     pub requested_ms: Option<StepTimes>,
@@ -161,7 +161,7 @@ impl TrialRules for TwoInterval {
     }
 
     fn simulate(&self, chose_first: bool, rt_ms: f64) -> Value {
-        let choice = if chose_first { Interval::First } else { Interval::Second };
+        let choice = if chose_first { Which::First } else { Which::Second };
         json!({ "choice": choice, "rt": rt_ms, "trial_type": self.name() })
     }
 }
