@@ -26,6 +26,10 @@ worded! {
         Side = "side",
         /// the right one below the left one
         Stack = "stack",
+        /// side, in the word that the codebook used to have
+        Beside = "beside",
+        /// stack, in the word that the codebook used to have
+        Below = "below",
     }
 }
 
