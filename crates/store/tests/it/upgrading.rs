@@ -119,10 +119,10 @@ async fn a_plan_that_was_brought_over_shows_what_it_showed() {
             assert_eq!(old["target_left"], trial.is_first("pa"));
             for (role, shown) in planned.shown().unwrap() {
                 assert_eq!(
-                    (old[role.name()].as_str(), &shown.item),
+                    (old[role.as_str()].as_str(), &shown.item),
                     (Some(&*shown.condition), &trial.item_id)
                 );
-                assert_eq!(old[format!("{}_sha256", role.name())], shown.sha256);
+                assert_eq!(old[format!("{}_sha256", role.as_str())], shown.sha256);
                 let info = store.stimulus_info(&shown.sha256).await.unwrap().unwrap();
                 assert_eq!((info.pixels_sha256, info.size), (shown.pixels_sha256, [64, 36]));
             }
