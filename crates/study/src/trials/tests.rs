@@ -91,12 +91,12 @@ fn answers_that_break_a_rule_are_refused_with_field_value_and_rule() {
 #[test]
 fn the_codebook_says_type_unit_meaning_and_values_of_every_column() {
     for kind in TrialKind::all() {
-        for column in kind.rules().schema().columns() {
+        for column in kind.rules().record().columns() {
             assert!(column.meaning.len() > 10, "{column:?}");
             assert!(column.kind == "text" || column.values.is_empty(), "{column:?}");
         }
     }
-    let columns = TrialKind::TwoAlternative.rules().schema().columns();
+    let columns = TrialKind::TwoAlternative.rules().record().columns();
     let column = |name: &str| columns.iter().find(|column| column.name == name).unwrap();
     assert_eq!((column("rt").kind.as_str(), column("rt").unit.as_str()), ("number", "ms"));
     let values = |name| column(name).values.iter().map(|v| v.value.as_str()).collect::<Vec<_>>();
