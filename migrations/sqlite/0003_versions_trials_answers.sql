@@ -34,10 +34,14 @@ CREATE TABLE version_stimuli (
     provenance    TEXT NOT NULL CHECK (json_valid(provenance)),
     PRIMARY KEY (study_id, version, item_id, condition),
     FOREIGN KEY (study_id, version) REFERENCES versions (study_id, version)
-) STRICT;
+) STRICT, WITHOUT ROWID;
 CREATE TRIGGER version_stimuli_no_update BEFORE UPDATE ON version_stimuli
 BEGIN SELECT RAISE(ABORT, 'what a version shows never changes'); END;
 CREATE TRIGGER version_stimuli_no_delete BEFORE DELETE ON version_stimuli
+BEGIN SELECT RAISE(ABORT, 'what a version shows never changes'); END;
+CREATE TRIGGER version_stimuli_no_replace BEFORE INSERT ON version_stimuli
+WHEN EXISTS (SELECT 1 FROM version_stimuli WHERE study_id = NEW.study_id AND version = NEW.version
+             AND item_id = NEW.item_id AND condition = NEW.condition)
 BEGIN SELECT RAISE(ABORT, 'what a version shows never changes'); END;
 
 DROP INDEX sessions_by_study;
@@ -51,6 +55,19 @@ CREATE INDEX sessions_by_version ON sessions (study_id, version, slot, completed
 CREATE TRIGGER sessions_have_a_version BEFORE INSERT ON sessions
 WHEN NOT EXISTS (SELECT 1 FROM versions WHERE study_id = NEW.study_id AND version IS NEW.version)
 BEGIN SELECT RAISE(ABORT, 'a session belongs to a version'); END;
+CREATE TRIGGER sessions_keep_their_version BEFORE UPDATE OF session_id, study_id, version ON sessions
+WHEN OLD.version IS NOT NULL
+AND (NEW.session_id <> OLD.session_id OR NEW.study_id <> OLD.study_id OR NEW.version IS NOT OLD.version)
+BEGIN SELECT RAISE(ABORT, 'a session keeps its version'); END;
+CREATE TRIGGER sessions_no_delete BEFORE DELETE ON sessions
+BEGIN SELECT RAISE(ABORT, 'a session keeps its version'); END;
+CREATE TRIGGER sessions_no_replace BEFORE INSERT ON sessions
+WHEN EXISTS (SELECT 1 FROM sessions WHERE rowid = NEW.rowid OR session_id = NEW.session_id)
+BEGIN SELECT RAISE(ABORT, 'a session keeps its version'); END;
+-- What a version shows is complete when its first session begins.
+CREATE TRIGGER version_stimuli_complete BEFORE INSERT ON version_stimuli
+WHEN EXISTS (SELECT 1 FROM sessions WHERE study_id = NEW.study_id AND version = NEW.version)
+BEGIN SELECT RAISE(ABORT, 'what a version shows never changes'); END;
 
 -- Plans grow: a trial is appended when it is decided, from the answers up to after_seq (0: from none).
 CREATE TABLE session_trials (
@@ -88,9 +105,9 @@ CREATE TRIGGER answers_no_update BEFORE UPDATE ON answers
 BEGIN SELECT RAISE(ABORT, 'answers are append-only'); END;
 CREATE TRIGGER answers_no_delete BEFORE DELETE ON answers
 BEGIN SELECT RAISE(ABORT, 'answers are append-only'); END;
--- INSERT OR REPLACE deletes without firing a delete trigger: an existing key is refused before that, and so is a gap.
+-- INSERT OR REPLACE deletes without firing a delete trigger: an existing key, the hidden rowid too, is refused before that, and so is a gap.
 CREATE TRIGGER answers_no_replace BEFORE INSERT ON answers
-WHEN EXISTS (SELECT 1 FROM answers WHERE (study_id = NEW.study_id AND seq = NEW.seq)
+WHEN EXISTS (SELECT 1 FROM answers WHERE rowid = NEW.rowid OR (study_id = NEW.study_id AND seq = NEW.seq)
              OR (session_id = NEW.session_id AND trial_index = NEW.trial_index) OR row_hash = NEW.row_hash)
 BEGIN SELECT RAISE(ABORT, 'answers are append-only'); END;
 CREATE TRIGGER answers_without_gaps BEFORE INSERT ON answers
@@ -115,7 +132,7 @@ BEGIN SELECT RAISE(ABORT, 'contents are append-only; a withdrawal may only blank
 CREATE TRIGGER contents_no_delete BEFORE DELETE ON answer_contents
 BEGIN SELECT RAISE(ABORT, 'contents are append-only; a withdrawal may only blank them'); END;
 CREATE TRIGGER contents_no_replace BEFORE INSERT ON answer_contents
-WHEN EXISTS (SELECT 1 FROM answer_contents WHERE study_id = NEW.study_id AND seq = NEW.seq)
+WHEN EXISTS (SELECT 1 FROM answer_contents WHERE rowid = NEW.rowid OR (study_id = NEW.study_id AND seq = NEW.seq))
 BEGIN SELECT RAISE(ABORT, 'contents are append-only; a withdrawal may only blank them'); END;
 
 -- Chain version 1 is closed: its last hash is what every chain of version 2 begins with.
@@ -135,4 +152,7 @@ CREATE TABLE chain_notes (
 CREATE TRIGGER chain_notes_no_update BEFORE UPDATE ON chain_notes
 BEGIN SELECT RAISE(ABORT, 'notes are append-only'); END;
 CREATE TRIGGER chain_notes_no_delete BEFORE DELETE ON chain_notes
+BEGIN SELECT RAISE(ABORT, 'notes are append-only'); END;
+CREATE TRIGGER chain_notes_no_replace BEFORE INSERT ON chain_notes
+WHEN EXISTS (SELECT 1 FROM chain_notes WHERE note_id = NEW.note_id)
 BEGIN SELECT RAISE(ABORT, 'notes are append-only'); END;

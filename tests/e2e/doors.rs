@@ -102,14 +102,14 @@ fn the_command_line_draws_what_a_study_shows() {
     assert!(Server::start(data.path(), true).terminate().success());
     let rows = sql(
         &data.path().join("kelir.sqlite"),
-        "SELECT pair_id, condition, sha256, provenance FROM study_stimuli JOIN renders USING (job_key)",
+        "SELECT item_id, condition, sha256, provenance FROM version_stimuli",
     );
     let shown: HashMap<(&str, &str), (&str, Value)> = rows
         .iter()
         .map(|row| {
             let text = |name: &str| row[name].as_str().unwrap();
             let provenance = serde_json::from_str(text("provenance")).unwrap();
-            ((text("pair_id"), text("condition")), (text("sha256"), provenance))
+            ((text("item_id"), text("condition")), (text("sha256"), provenance))
         })
         .collect();
     assert_eq!(shown.len(), 4);

@@ -25,15 +25,20 @@ fn answer(server: &Server) {
         let path = format!("/api/v1/sessions/{id}");
         assert_eq!(server.call("POST", &format!("{path}/consent"), token, &Value::Null).0, 200);
         // Only the database knows which side is which.
-        let plan = sql(&database, &format!("SELECT trials FROM sessions WHERE session_id = '{id}'"));
-        let plan: Value = serde_json::from_str(plan[0]["trials"].as_str().unwrap()).unwrap();
+        let plan = sql(
+            &database,
+            &format!("SELECT trial FROM session_trials WHERE session_id = '{id}' ORDER BY trial_index"),
+        );
+        let plan: Vec<Value> =
+            plan.iter().map(|row| serde_json::from_str(row["trial"].as_str().unwrap()).unwrap()).collect();
         for (block, counts, ..) in PAPER {
             let wanted = counts.iter().enumerate().flat_map(|(k, n)| std::iter::repeat_n(k, *n)).nth(person);
-            let trials = plan.as_array().unwrap().iter().filter(|trial| trial["block_id"] == block);
+            let trials = plan.iter().filter(|trial| trial["block_id"] == block);
             for (k, trial) in trials.enumerate() {
                 let Some(wanted) = wanted else { continue };
                 let pa = k < wanted;
-                let choice = if (trial["left"] == "pa") == pa { "left" } else { "right" };
+                let choice =
+                    if (trial["shown"]["left"]["condition"] == "pa") == pa { "left" } else { "right" };
                 let body = json!({"choice": choice, "rt": 900.0 + 61.0 * (person * 7 % 33) as f64 + 200.0 * k as f64, "onset": 100.0, "time_elapsed": 5000,
                     "trial_type": "two-alternative", "plugin_version": "0.1.0", "input": "keyboard", "scale": 1.0, "device_pixel_ratio": 1.0,
                     "viewport": [1280, 800], "refresh_hz": 60.0, "reload_count": 0, "timestamp": "2026-11-22T10:30:00.000Z"});
@@ -135,7 +140,7 @@ fn a_report_says_what_the_answers_say_in_every_form() {
         assert!(rmse.is_none_or(|rmse| rmse == 0.0 || holds(&shown, rmse)), "{stimulus}");
     }
     assert!(
-        page.contains(json["config_hash"].as_str().unwrap())
+        page.contains(json["version"].as_str().unwrap())
             && page.contains(json["chain"]["head"].as_str().unwrap())
     );
     // Control: the paper's printed third t is on the page as printed, its neighbours are not.

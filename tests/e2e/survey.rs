@@ -39,8 +39,14 @@ fn three_participants_from_the_welcome_to_the_t_test() {
     let database = database(data.path());
     let rows = sql(
         &database,
-        "SELECT r.*, json_extract(s.params, '$.PROLIFIC_PID') AS person, s.completion_code, s.trials AS plan \
-         FROM responses r JOIN sessions s USING (session_id) ORDER BY s.created_at, r.trial_index",
+        "SELECT a.trial_index, json_extract(s.params, '$.PROLIFIC_PID') AS person, s.completion_code,
+         json_extract(t.trial, '$.block_id') AS block_id,
+         json_extract(a.row, '$[5].left.sha256') AS left_sha256, json_extract(a.row, '$[5].right.sha256') AS right_sha256,
+         json_extract(a.row, '$[5].left.condition') AS left_condition, json_extract(a.row, '$[5].right.condition') AS right_condition,
+         json_extract(c.answer, '$.choice') AS choice, json_extract(c.answer, '$.rt_ms') AS rt_ms,
+         json_extract(a.row, '$[5].' || json_extract(c.answer, '$.choice') || '.condition') AS chosen_condition
+         FROM answers a JOIN sessions s USING (session_id) JOIN session_trials t USING (session_id, trial_index)
+         JOIN answer_contents c ON c.study_id = a.study_id AND c.seq = a.seq ORDER BY s.created_at, a.trial_index",
     );
     assert_eq!(rows.len(), 15, "one row a trial");
     for (rows, participant) in rows.chunks(5).zip(taken) {
@@ -181,7 +187,10 @@ fn a_killed_server_loses_nothing_that_it_acknowledged() {
     }
     let rows = sql(
         &database(data.path()),
-        &format!("SELECT trial_index, choice FROM responses WHERE session_id = '{id}' ORDER BY trial_index"),
+        &format!(
+            "SELECT a.trial_index, json_extract(c.answer, '$.choice') AS choice FROM answers a JOIN answer_contents c USING (study_id, seq)
+             WHERE a.session_id = '{id}' ORDER BY a.trial_index"
+        ),
     );
     let choices: Vec<&str> = rows.iter().map(|row| row["choice"].as_str().unwrap()).collect();
     assert_eq!(choices, ["left", "right", "left", "right", "left"]);
@@ -208,7 +217,8 @@ fn no_code_before_every_trial_is_stored_and_no_answer_changes() {
     );
     let (status, body) = server.call("PUT", &path, Some(&token), &answer("right"));
     assert_eq!((status, &body["code"]), (409, &json!("already_answered")), "{body}");
-    let rows = sql(&database(data.path()), "SELECT choice FROM responses");
+    let rows =
+        sql(&database(data.path()), "SELECT json_extract(answer, '$.choice') AS choice FROM answer_contents");
     assert_eq!(rows, [json!({"choice": "left"})]);
     // Wrong requests: one shape, no stack, no SQL.
     for (method, path, token, body, expected) in [
@@ -233,7 +243,7 @@ fn no_code_before_every_trial_is_stored_and_no_answer_changes() {
     // The database itself refuses to change an answer, whoever asks.
     let out = std::process::Command::new("sqlite3")
         .arg(database(data.path()))
-        .arg("UPDATE responses SET choice = 'right'")
+        .arg("UPDATE answer_contents SET answer = replace(answer, 'left', 'right')")
         .output()
         .unwrap();
     assert!(!out.status.success() && String::from_utf8_lossy(&out.stderr).contains("append-only"), "{out:?}");

@@ -14,6 +14,12 @@ fn stats(data: &Path, more: &[&str]) -> Value {
     serde_json::from_str(&kelir_ok(&args)).unwrap()
 }
 
+/// Who answered all of the first block, with those whom screening leaves out.
+fn people(report: &Value) -> Value {
+    let all = if report["blocks_with_excluded"].is_null() { "blocks" } else { "blocks_with_excluded" };
+    report[all][0]["n"].clone()
+}
+
 fn versions(data: &Path) -> Vec<Value> {
     let text =
         kelir_ok(&["study", "versions", "small", "--data", data.to_str().unwrap(), "--format", "json"]);
@@ -68,10 +74,10 @@ fn answers_to_different_pictures_are_apart_until_somebody_pools_them_by_name() {
     let [current, before] = [0, 1].map(|i| known[i]["version"].as_str().unwrap());
 
     let now = stats(data.path(), &[]);
-    assert_eq!((&now["version"], &now["blocks"][0]["n"]), (&json!(current), &json!(3)));
+    assert_eq!((&now["version"], &people(&now)), (&json!(current), &json!(3)));
     assert_eq!(now["other_versions"], json!([{ "version": before, "sessions": 2, "answers": 8 }]));
     let then = stats(data.path(), &["--version", &before[..12]]);
-    assert_eq!((&then["version"], &then["blocks"][0]["n"]), (&json!(before), &json!(2)));
+    assert_eq!((&then["version"], &people(&then)), (&json!(before), &json!(2)));
     let hash = |report: &Value, item: &str| {
         let stimuli = report["stimuli"].as_array().unwrap();
         stimuli.iter().find(|s| s["item"] == item && s["condition"] == "pa").unwrap()["pixels_sha256"].clone()
@@ -91,7 +97,7 @@ fn answers_to_different_pictures_are_apart_until_somebody_pools_them_by_name() {
         assert_eq!(shown, [json!({ "pixels": hash(report, "a") })]);
     }
     let pooled = stats(data.path(), &["--with", "all"]);
-    assert_eq!(pooled["blocks"][0]["n"], 5);
+    assert_eq!(people(&pooled), 5);
     assert_eq!(pooled["pooled"].as_array().unwrap().len(), 2);
     let different: Vec<_> =
         pooled["different_stimuli"].as_array().unwrap().iter().map(|d| d["item"].as_str().unwrap()).collect();
@@ -117,7 +123,7 @@ fn answers_to_different_pictures_are_apart_until_somebody_pools_them_by_name() {
     assert_eq!((&rest["items"][0]["version"], &rest["next_cursor"]), (&json!(before), &Value::Null));
     let results =
         server.research(&cookie, &format!("/api/v1/studies/small/versions/{before}/results?with=current"));
-    assert_eq!((&results["version"], &results["blocks"][0]["n"]), (&json!(before), &json!(5)));
+    assert_eq!((&results["version"], &people(&results)), (&json!(before), &json!(5)));
     for wrong in ["0000000000", "x", "1234567"] {
         let out = kelir(&["stats", "small", "--data", data.path().to_str().unwrap(), "--version", wrong]);
         assert_eq!(out.status.code(), Some(2), "{wrong}: {out:?}");

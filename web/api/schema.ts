@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. e21bf2a78eb602ee592162e14033046e506ae501c82dc578862e5142fc5d15de f4812381738d544505243a0435d1668773820f5d87f2595c809d0b5722f5816a
+// Generated from openapi.json by `npm run types`; do not edit. 3ceafc6f8a8eccc071a655bbf9f49a938eee42d634016d229a1d0ebebbd118da 1cb4e2ef38fc9ef2186f33c9210d2f28031b20b7ada14af39e795d656a174436
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -475,7 +475,7 @@ export interface components {
         /** @description The answer to a trial, as its kind asks. */
         Answer: components["schemas"]["TwoAlternativeAnswer"] | components["schemas"]["TwoIntervalAnswer"];
         /** @description How the two pictures stood. */
-        Arrangement: "side" | "stack";
+        Arrangement: "side" | "stack" | "beside" | "below";
         /** @description What an exact binomial test says. */
         BinomialTest: {
             /**

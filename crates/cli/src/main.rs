@@ -10,7 +10,7 @@ use clap::{Parser, Subcommand};
 
 /// A platform for perceptual studies of shadows: render, ask, store, judge.
 #[derive(Parser)]
-#[command(name = "kelir", version, propagate_version = true)]
+#[command(name = "kelir", version)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

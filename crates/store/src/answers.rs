@@ -280,7 +280,7 @@ impl Head {
     ) -> Result<(), StoreError> {
         let mut nonce = [0; 16];
         getrandom::fill(&mut nonce).map_err(|error| StoreError::corrupt("nonce", error))?;
-        let answer_hash = answer_hash(&nonce, &new.answer, &new.payload);
+        let answer_hash = answer_hash(&nonce, new.answer.as_bytes(), new.payload.as_bytes());
         let seq = self.seq + 1;
         let values = json!([
             session.study_id,
@@ -328,8 +328,8 @@ pub(crate) async fn genesis(connection: &mut SqliteConnection) -> Result<String,
 }
 
 /// SHA-256 (hex) over nonce, answer, line feed and payload.
-pub(crate) fn answer_hash(nonce: &[u8], answer: &str, payload: &str) -> String {
-    let parts = [nonce, answer.as_bytes(), b"\n", payload.as_bytes()];
+pub(crate) fn answer_hash(nonce: &[u8], answer: &[u8], payload: &[u8]) -> String {
+    let parts = [nonce, answer, b"\n", payload];
     let hasher = parts.into_iter().fold(Sha256::new(), |hasher, part| hasher.chain_update(part));
     hasher.finalize().iter().map(|b| format!("{b:02x}")).collect()
 }

@@ -10,6 +10,7 @@ use serde::Serialize;
 use serde::de::IgnoredAny;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
+use std::borrow::Cow;
 use utoipa::ToSchema;
 
 /// What checking a study's answers found, those of chain version 1 (all studies of before) among them.
@@ -19,27 +20,27 @@ pub struct ChainReport {
     pub rows: u64,
     /// Hash of the last row; noting it elsewhere also proves that no later rows were cut off.
     pub head: String,
-    /// Rows that are not what was written; checking went on behind them.
+    /// All that is wrong, row by row; checking went on behind each. A row can have several.
     pub faults: Vec<Fault>,
     /// Answers that were blanked by a withdrawal.
     pub blanked: u64,
 }
 
-/// A row that does not verify.
+/// Something wrong with a row.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Fault {
     /// Version of the chain: 1 (all studies in one, closed) or 2 (the study's own).
     pub chain: u32,
     /// Place in its chain.
     pub seq: i64,
-    /// What is wrong with it.
+    /// What is wrong.
     pub what: String,
-    /// What is known of it: the last note that somebody left.
+    /// What is known of the row: the last note that somebody left.
     pub note: Option<String>,
 }
 
 impl ChainReport {
-    /// Rows that do not verify and that nobody has explained.
+    /// Faults of rows that nobody has explained.
     pub fn unexplained(&self) -> impl Iterator<Item = &Fault> {
         self.faults.iter().filter(|fault| fault.note.is_none())
     }
@@ -87,7 +88,7 @@ impl Store {
             for row in &page {
                 let row = FirstRow::read(row)?;
                 let (seq, hash) = row.place();
-                report.note(1, seq, row.fault((previous.0, &previous.1)), row.is_blanked());
+                report.add(1, seq, row.faults((previous.0, &previous.1)), row.is_blanked());
                 previous = (seq, hash.to_owned());
             }
         }
@@ -106,11 +107,11 @@ impl Store {
                 return Ok(());
             }
             for row in &page {
-                let fault = fault(row, seq + 1, &report.head)?;
+                let held = Held::read(row)?;
+                let faults = faults(row, &held, (seq, &report.head))?;
                 seq = row.try_get("seq")?;
-                let blanked = row.try_get::<Option<Vec<u8>>, _>("nonce")?.is_none();
-                report.note(2, seq, fault, blanked);
-                report.head = row.try_get("row_hash")?;
+                report.add(2, seq, faults, held == Held::Blanked);
+                report.head = text(row, "row_hash")?.into_owned();
             }
         }
     }
@@ -143,45 +144,79 @@ impl Store {
 }
 
 impl ChainReport {
-    fn note(&mut self, chain: u32, seq: i64, fault: Option<&str>, blanked: bool) {
+    fn add(&mut self, chain: u32, seq: i64, faults: Vec<&str>, blanked: bool) {
         self.rows += 1;
         self.blanked += u64::from(blanked);
-        if let Some(what) = fault {
-            self.faults.push(Fault { chain, seq, what: what.to_owned(), note: None });
-        }
+        let fault = |what: &str| Fault { chain, seq, what: what.to_owned(), note: None };
+        self.faults.extend(faults.into_iter().map(fault));
     }
 }
 
-/// What is wrong with a row of `answers` that should be number `seq` and follow `prev_hash`.
-fn fault(row: &SqliteRow, seq: i64, prev_hash: &str) -> Result<Option<&'static str>, StoreError> {
-    let text: String = row.try_get("row")?;
-    if row.try_get::<i64, _>("seq")? != seq {
-        return Ok(Some("rows before it are missing"));
+/// What lies beside a row of `answers`.
+#[derive(PartialEq)]
+enum Held<'a> {
+    /// Nonce, answer and payload.
+    Whole([&'a [u8]; 3]),
+    /// What a withdrawal leaves.
+    Blanked,
+    /// Nothing: not even an empty place.
+    Gone,
+}
+
+impl<'a> Held<'a> {
+    fn read(row: &'a SqliteRow) -> Result<Held<'a>, StoreError> {
+        if row.try_get::<Option<i64>, _>("held")?.is_none() {
+            return Ok(Held::Gone);
+        }
+        let [nonce, answer, payload] = ["nonce", "answer", "payload"].map(|column| bytes(row, column));
+        Ok(match (nonce?, answer?, payload?) {
+            (None, None, None) => Held::Blanked,
+            (nonce, answer, payload) => Held::Whole([nonce, answer, payload].map(Option::unwrap_or_default)),
+        })
     }
-    if sha256_hex(text.as_bytes()) != row.try_get::<String, _>("row_hash")? {
-        return Ok(Some("its values are not those that were written"));
+}
+
+/// What is wrong with a row of `answers` after `previous` (its number and hash).
+fn faults(row: &SqliteRow, held: &Held<'_>, previous: (i64, &str)) -> Result<Vec<&'static str>, StoreError> {
+    let mut faults = Vec::new();
+    let seq: i64 = row.try_get("seq")?;
+    let adjoins = seq == previous.0 + 1;
+    if !adjoins {
+        faults.push("rows before it are missing");
     }
-    let Ok(values) = serde_json::from_str::<RowValues<IgnoredAny>>(&text) else {
-        return Ok(Some("it is no row of answers"));
+    let written = bytes(row, "row")?.unwrap_or_default();
+    if sha256_hex(written) != text(row, "row_hash")? {
+        faults.push("its values are not those that were written");
+    }
+    let Ok(values) = serde_json::from_slice::<RowValues<IgnoredAny>>(written) else {
+        faults.push("it is no row of answers");
+        return Ok(faults);
     };
-    let (study_id, own_seq, session_id, trial_index, _, _, _, hash, prev) = values;
-    let (of_study, of_session): (String, String) = (row.try_get("study_id")?, row.try_get("session_id")?);
-    let in_place = study_id == of_study && own_seq == seq && session_id == of_session;
+    let (study_id, own_seq, session_id, trial_index, _, _, _, hash, prev_hash) = values;
+    let in_place =
+        study_id == text(row, "study_id")? && own_seq == seq && session_id == text(row, "session_id")?;
     if !in_place || i64::from(trial_index) != row.try_get::<i64, _>("trial_index")? {
-        return Ok(Some("it stands in another row's place"));
+        faults.push("it stands in another row's place");
     }
-    if prev != prev_hash {
-        return Ok(Some("it does not follow the row before"));
+    if adjoins && prev_hash != previous.1 {
+        faults.push("it does not follow the row before");
     }
-    if row.try_get::<Option<i64>, _>("held")?.is_none() {
-        return Ok(Some("its answer is gone, and not by a withdrawal"));
+    match held {
+        Held::Gone => faults.push("its answer is gone, and not by a withdrawal"),
+        Held::Whole([nonce, answer, payload]) if answer_hash(nonce, answer, payload) != hash => {
+            faults.push("its answer is not the one that came");
+        }
+        Held::Whole(_) | Held::Blanked => {}
     }
-    let nonce: Option<Vec<u8>> = row.try_get("nonce")?;
-    let (answer, payload): (Option<String>, Option<String>) =
-        (row.try_get("answer")?, row.try_get("payload")?);
-    Ok(match (nonce, answer, payload) {
-        (None, None, None) => None,
-        (Some(nonce), Some(answer), Some(payload)) if answer_hash(&nonce, &answer, &payload) == hash => None,
-        _ => Some("its answer is not the one that came"),
-    })
+    Ok(faults)
+}
+
+/// A stored text to the byte, for what was tampered with need not be UTF-8.
+pub(crate) fn bytes<'a>(row: &'a SqliteRow, column: &str) -> Result<Option<&'a [u8]>, sqlx::Error> {
+    row.try_get_unchecked(column)
+}
+
+/// A stored text, to compare with.
+pub(crate) fn text<'a>(row: &'a SqliteRow, column: &str) -> Result<Cow<'a, str>, sqlx::Error> {
+    Ok(String::from_utf8_lossy(bytes(row, column)?.unwrap_or_default()))
 }

@@ -2,6 +2,7 @@
 //! readable and verified by their own rule.
 
 use crate::answers::{AnswerRow, ShownStimulus};
+use crate::chain::{bytes, text as text_of};
 use crate::error::StoreError;
 use crate::files::sha256_hex;
 use kelir_study::trials::Role;
@@ -15,7 +16,7 @@ pub const GENESIS: &str = "00000000000000000000000000000000000000000000000000000
 
 /// Columns of a row with what it refers to.
 pub(crate) const SELECT: &str =
-    "SELECT r.*, s.subject_id, s.study_id, p.payload, l.pixels_sha256 AS left_pixels, x.pixels_sha256 AS right_pixels
+    "SELECT r.*, s.subject_id, s.study_id, p.payload, p.response_id AS held, l.pixels_sha256 AS left_pixels, x.pixels_sha256 AS right_pixels
      FROM responses r LEFT JOIN sessions s USING (session_id) LEFT JOIN response_payloads p USING (response_id)
      LEFT JOIN stimuli l ON l.sha256 = r.left_sha256 LEFT JOIN stimuli x ON x.sha256 = r.right_sha256";
 
@@ -25,7 +26,9 @@ pub(crate) struct FirstRow {
     text: BTreeMap<&'static str, String>,
     trial_index: i64,
     rt_ms: f64,
-    payload: Option<String>,
+    payload: Option<Vec<u8>>,
+    /// Whether there is a place for its payload, with or without one.
+    held: bool,
 }
 
 const TEXTS: [&str; 12] = [
@@ -47,14 +50,15 @@ impl FirstRow {
     pub(crate) fn read(row: &SqliteRow) -> Result<FirstRow, StoreError> {
         let mut text = BTreeMap::new();
         for name in TEXTS.into_iter().chain(["row_hash"]) {
-            text.insert(name, row.try_get(name)?);
+            text.insert(name, text_of(row, name)?.into_owned());
         }
         Ok(FirstRow {
             response_id: row.try_get("response_id")?,
             text,
             trial_index: row.try_get("trial_index")?,
             rt_ms: row.try_get("rt_ms")?,
-            payload: row.try_get("payload")?,
+            payload: bytes(row, "payload")?.map(<[u8]>::to_vec),
+            held: row.try_get::<Option<i64>, _>("held")?.is_some(),
         })
     }
 
@@ -71,21 +75,26 @@ impl FirstRow {
         sha256_hex(Value::Array(values).to_string().as_bytes())
     }
 
-    /// What is wrong with the row after `previous` (its number and hash); `None` when nothing is.
-    pub(crate) fn fault(&self, previous: (i64, &str)) -> Option<&'static str> {
+    /// What is wrong with the row after `previous` (its number and hash).
+    pub(crate) fn faults(&self, previous: (i64, &str)) -> Vec<&'static str> {
+        let mut faults = Vec::new();
+        if self.response_id != previous.0 + 1 {
+            faults.push("rows before it are missing");
+        } else if self.of("prev_hash") != previous.1 {
+            faults.push("it does not follow the row before");
+        }
         // SQLite reads a stored −0.0 back as 0.0: what was hashed is then the other zero.
         let whole = |rt: f64| self.hash(rt) == self.of("row_hash");
-        if self.response_id != previous.0 + 1 {
-            Some("rows before it are missing")
-        } else if self.of("prev_hash") != previous.1 {
-            Some("it does not follow the row before")
-        } else if !(whole(self.rt_ms) || self.rt_ms == 0.0 && whole(-0.0)) {
-            Some("its values are not those that were written")
-        } else if self.payload.as_ref().is_some_and(|p| sha256_hex(p.as_bytes()) != self.of("payload_hash")) {
-            Some("its payload is not the one that came")
-        } else {
-            None
+        if !(whole(self.rt_ms) || self.rt_ms == 0.0 && whole(-0.0)) {
+            faults.push("its values are not those that were written");
         }
+        if !self.held {
+            faults.push("its payload is gone, and not by a withdrawal");
+        }
+        if self.payload.as_ref().is_some_and(|payload| sha256_hex(payload) != self.of("payload_hash")) {
+            faults.push("its payload is not the one that came");
+        }
+        faults
     }
 
     pub(crate) fn place(&self) -> (i64, &str) {
@@ -93,7 +102,7 @@ impl FirstRow {
     }
 
     pub(crate) fn is_blanked(&self) -> bool {
-        self.payload.is_none()
+        self.held && self.payload.is_none()
     }
 }
 

@@ -6,7 +6,10 @@ use crate::sqlite::Store;
 use std::time::Duration;
 
 impl Store {
-    /// The researcher's password hash (PHC text).
+    /// The researcher's password hash (PHC text); `None` for an unknown one.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn password_hash(&self, name: &str) -> Result<Option<String>, StoreError> {
         Ok(sqlx::query_scalar("SELECT password_hash FROM researchers WHERE name = $1")
             .bind(name)
@@ -15,6 +18,9 @@ impl Store {
     }
 
     /// Sets a researcher's password hash and signs every browser of theirs out.
+    ///
+    /// # Errors
+    /// The database fails.
     pub async fn set_password_hash(&self, name: &str, hash: &str) -> Result<(), StoreError> {
         let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         sqlx::query(
@@ -32,6 +38,9 @@ impl Store {
     }
 
     /// Signs a browser in for `lasting`; only the token's hash is kept.
+    ///
+    /// # Errors
+    /// The database refuses, as it does an unknown researcher.
     pub async fn sign_in(&self, name: &str, token_hash: &str, lasting: Duration) -> Result<(), StoreError> {
         let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         sqlx::query("DELETE FROM researcher_sessions WHERE expires_at <= $1")
@@ -50,6 +59,9 @@ impl Store {
     }
 
     /// Who is signed in with this token, if anyone still is.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn signed_in(&self, token_hash: &str) -> Result<Option<String>, StoreError> {
         Ok(sqlx::query_scalar(
             "SELECT name FROM researcher_sessions WHERE token_hash = $1 AND expires_at > $2",
@@ -61,6 +73,9 @@ impl Store {
     }
 
     /// Signs the browser with this token out.
+    ///
+    /// # Errors
+    /// The database fails.
     pub async fn sign_out(&self, token_hash: &str) -> Result<(), StoreError> {
         sqlx::query("DELETE FROM researcher_sessions WHERE token_hash = $1")
             .bind(token_hash)

@@ -143,7 +143,10 @@ impl Store {
         Ok(session)
     }
 
-    /// The session with this id.
+    /// The session with this id; `None` for an unknown one.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn session(&self, session_id: &str) -> Result<Option<Session>, StoreError> {
         let row = sqlx::query("SELECT * FROM sessions WHERE session_id = $1")
             .bind(session_id)
@@ -153,6 +156,9 @@ impl Store {
     }
 
     /// All sessions of these versions of a study, oldest first.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn sessions(&self, study_id: &str, versions: &[String]) -> Result<Vec<Session>, StoreError> {
         let versions = serde_json::to_string(versions).map_err(|e| StoreError::corrupt("versions", e))?;
         let rows = sqlx::query(
@@ -166,6 +172,9 @@ impl Store {
     }
 
     /// Notes that the session is alive, which keeps its slot.
+    ///
+    /// # Errors
+    /// The database fails.
     pub async fn touch_session(&self, session_id: &str) -> Result<(), StoreError> {
         sqlx::query("UPDATE sessions SET last_seen_at = $2 WHERE session_id = $1")
             .bind(session_id)
@@ -176,6 +185,9 @@ impl Store {
     }
 
     /// Notes that the participant agreed to the text of this hash; the first time counts.
+    ///
+    /// # Errors
+    /// The database fails.
     pub async fn consent(&self, session_id: &str, consent_sha256: &str) -> Result<(), StoreError> {
         sqlx::query(
             "UPDATE sessions SET consent_sha256 = CASE WHEN consented_at IS NULL THEN $3 ELSE consent_sha256 END,
@@ -190,11 +202,17 @@ impl Store {
     }
 
     /// Indices of the trials that have an answer, ascending.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn answered(&self, session_id: &str) -> Result<Vec<u32>, StoreError> {
         answered(&mut *self.reader.acquire().await?, session_id).await
     }
 
     /// Finishes a session whose every trial is stored and gives it `code`; a session that is finished keeps its first code.
+    ///
+    /// # Errors
+    /// The database fails, or has no such session.
     pub async fn complete(&self, session: &Session, code: &str) -> Result<Completed, StoreError> {
         let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let answered = answered(&mut tx, &session.session_id).await?;

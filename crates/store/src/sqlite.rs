@@ -39,7 +39,7 @@ impl Store {
     /// Opens `folder`, which it makes if need be, with `kelir.sqlite` and `stimuli/` inside, and brings the layout up to date.
     ///
     /// # Errors
-    /// The folder or the database cannot be opened, or was written by a newer version.
+    /// The folder or the database cannot be opened, was written by a newer version, or holds what cannot be brought over; it is as it was.
     pub async fn open(folder: &Path) -> Result<Store, StoreError> {
         std::fs::create_dir_all(folder)
             .map_err(|source| StoreError::File { path: folder.to_owned(), source })?;
@@ -55,11 +55,14 @@ impl Store {
         let migrations = MIGRATIONS.map(|(version, name, sql)| {
             Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
         });
-        Migrator::with_migrations(migrations.into()).run(&writer).await?;
+        let files = Files::open(folder.join("stimuli"))?;
+        // One transaction: what cannot be brought over stays as it was, for whichever version wrote it.
+        let mut tx = writer.begin_with("BEGIN IMMEDIATE").await?;
+        Migrator::with_migrations(migrations.into()).run(&mut *tx).await?;
+        upgrade::from_first_layout(&mut tx, &files).await?;
+        tx.commit().await?;
         let reader =
             SqlitePoolOptions::new().max_connections(4).connect_with(options.read_only(true)).await?;
-        let files = Files::open(folder.join("stimuli"))?;
-        upgrade::from_first_layout(&writer, &files).await?;
         Ok(Store { writer, reader, files, folder: folder.to_owned() })
     }
 
@@ -69,12 +72,18 @@ impl Store {
     }
 
     /// Whether the database answers.
+    ///
+    /// # Errors
+    /// It does not.
     pub async fn ping(&self) -> Result<(), StoreError> {
         sqlx::query("SELECT 1").execute(&self.reader).await?;
         Ok(())
     }
 
     /// The writer's `synchronous` (2 is FULL) and `foreign_keys` (1 is on).
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn pragmas(&self) -> Result<(i64, i64), StoreError> {
         let synchronous = sqlx::query_scalar("PRAGMA synchronous").fetch_one(&self.writer).await?;
         let foreign_keys = sqlx::query_scalar("PRAGMA foreign_keys").fetch_one(&self.writer).await?;

@@ -126,7 +126,10 @@ impl Store {
         .transpose()
     }
 
-    /// The finished job with this key.
+    /// The finished job with this key; `None` for an unknown one.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn render(&self, job_key: &str) -> Result<Option<Render>, StoreError> {
         let row = sqlx::query("SELECT sha256, provenance FROM renders WHERE job_key = $1")
             .bind(job_key)
@@ -143,6 +146,9 @@ impl Store {
     }
 
     /// Notes a finished job; its stimulus must be stored already. Made again (after damage), the newer one counts.
+    ///
+    /// # Errors
+    /// The database refuses, as it does a stimulus that is not stored.
     pub async fn put_render(&self, render: &Render) -> Result<(), StoreError> {
         sqlx::query(
             "INSERT INTO renders (job_key, sha256, provenance, created_at) VALUES ($1, $2, $3, $4)

@@ -10,8 +10,8 @@ use kelir_study::trials::{Role, TrialKind};
 use kelir_study::{StudyDefinition, Trial};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use sqlx::sqlite::{SqliteConnection, SqlitePool};
-use sqlx::{Connection, Row};
+use sqlx::Row;
+use sqlx::sqlite::SqliteConnection;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A trial as sessions used to hold it.
@@ -36,18 +36,16 @@ struct OldFile {
     loaded_at: String,
 }
 
-/// Brings everything over, all or nothing; at once when it has been.
-pub(crate) async fn from_first_layout(writer: &SqlitePool, files: &Files) -> Result<(), StoreError> {
-    let mut connection = writer.acquire().await?;
+/// Brings everything over, in its caller's transaction; nothing where that has been done.
+pub(crate) async fn from_first_layout(tx: &mut SqliteConnection, files: &Files) -> Result<(), StoreError> {
     let waiting = "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = 'study_stimuli'";
-    if sqlx::query_scalar::<_, i64>(waiting).fetch_one(&mut *connection).await? == 0 {
+    if sqlx::query_scalar::<_, i64>(waiting).fetch_one(&mut *tx).await? == 0 {
         return Ok(());
     }
-    let mut tx = connection.begin_with("BEGIN IMMEDIATE").await?;
     sqlx::query("PRAGMA defer_foreign_keys = ON").execute(&mut *tx).await?;
-    hash_pixels(&mut tx, files).await?;
-    for file in old_files(&mut tx).await? {
-        bring_over(&mut tx, &file).await?;
+    hash_pixels(tx, files).await?;
+    for file in old_files(tx).await? {
+        bring_over(tx, &file).await?;
     }
     for done in [
         "DROP TABLE study_stimuli",
@@ -56,7 +54,6 @@ pub(crate) async fn from_first_layout(writer: &SqlitePool, files: &Files) -> Res
     ] {
         sqlx::query(done).execute(&mut *tx).await?;
     }
-    tx.commit().await?;
     Ok(())
 }
 
@@ -180,6 +177,8 @@ async fn stimuli(
 ) -> Result<Vec<StudyStimulus>, StoreError> {
     let mut stimuli = Vec::new();
     for (item, condition, sha256) in shown {
+        // A missing stimulus used to be planned as an empty hash.
+        let Some(pixels_sha256) = pixels_of(tx, sha256).await? else { continue };
         let query = "SELECT provenance FROM renders WHERE sha256 = $1 ORDER BY created_at DESC LIMIT 1";
         let provenance: Option<String> =
             sqlx::query_scalar(query).bind(sha256).fetch_optional(&mut *tx).await?;
@@ -187,7 +186,7 @@ async fn stimuli(
             item: item.clone(),
             condition: condition.clone(),
             sha256: sha256.clone(),
-            pixels_sha256: pixels_of(tx, sha256).await?,
+            pixels_sha256,
             size: study.size,
             provenance: provenance.map_or(Ok(Value::Object(Default::default())), read_json)?,
         });
@@ -195,10 +194,9 @@ async fn stimuli(
     Ok(stimuli)
 }
 
-async fn pixels_of(tx: &mut SqliteConnection, sha256: &str) -> Result<String, StoreError> {
+async fn pixels_of(tx: &mut SqliteConnection, sha256: &str) -> Result<Option<String>, StoreError> {
     let query = sqlx::query_scalar("SELECT pixels_sha256 FROM stimuli WHERE sha256 = $1").bind(sha256);
-    // An empty hash is what a missing stimulus used to be stored as.
-    Ok(query.fetch_optional(tx).await?.unwrap_or_else(|| format!("file:{sha256}")))
+    Ok(query.fetch_optional(&mut *tx).await?)
 }
 
 async fn new_trial(
@@ -213,7 +211,8 @@ async fn new_trial(
     let shown = trial.rules().plan(&old.pair_id, target, other, target_left);
     let mut stimuli = BTreeMap::new();
     for (role, sha256) in [(Role::Left, &old.left_sha256), (Role::Right, &old.right_sha256)] {
-        let hashes = StimulusHashes { sha256: sha256.clone(), pixels_sha256: pixels_of(tx, sha256).await? };
+        let pixels_sha256 = pixels_of(tx, sha256).await?.unwrap_or_default();
+        let hashes = StimulusHashes { sha256: sha256.clone(), pixels_sha256 };
         stimuli.insert(role, hashes);
     }
     let trial = Trial {

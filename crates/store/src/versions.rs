@@ -164,7 +164,7 @@ async fn put_file(
     Ok(())
 }
 
-/// Writes the version that a stored file and these stimuli make.
+/// Writes the version that a stored file and these stimuli make; of one that is known, that it was served.
 pub(crate) async fn put_version(
     writer: &mut SqliteConnection,
     study: &StudyDefinition,
@@ -182,10 +182,13 @@ pub(crate) async fn put_version(
         })
         .collect();
     let version = study.version(&shown);
+    let known = "SELECT EXISTS (SELECT 1 FROM versions WHERE study_id = $1 AND version = $2)";
+    let known: bool =
+        sqlx::query_scalar(known).bind(&study.id).bind(&version).fetch_one(&mut *writer).await?;
     sqlx::query(
         "INSERT INTO versions (study_id, version, design_hash, file_hash, first_served_at, last_served_at) VALUES ($1, $2, $3, $4, $5, $5)
          ON CONFLICT (study_id, version) DO UPDATE SET file_hash = excluded.file_hash,
-         last_served_at = max(last_served_at, excluded.last_served_at)",
+         first_served_at = min(first_served_at, excluded.first_served_at), last_served_at = max(last_served_at, excluded.last_served_at)",
     )
     .bind(&study.id)
     .bind(&version)
@@ -194,10 +197,13 @@ pub(crate) async fn put_version(
     .bind(now)
     .execute(&mut *writer)
     .await?;
+    if known {
+        return Ok(version);
+    }
     for stimulus in stimuli {
         sqlx::query(
             "INSERT INTO version_stimuli (study_id, version, item_id, condition, sha256, pixels_sha256, provenance)
-             VALUES ($1, $2, $3, $4, $5, $6, $7) ON CONFLICT DO NOTHING",
+             VALUES ($1, $2, $3, $4, $5, $6, $7)",
         )
         .bind(&study.id)
         .bind(&version)

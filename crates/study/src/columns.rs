@@ -201,7 +201,7 @@ fn flat(name: &str) -> String {
 fn sent() -> Vec<(String, Column)> {
     let mut fields: Vec<(String, Column)> = Vec::new();
     for kind in TrialKind::all() {
-        for column in kind.rules().schema().columns() {
+        for column in kind.rules().record().columns() {
             let path = column.name.clone();
             let known = fields.iter().any(|(known, _)| *known == path);
             if !known && !ELSEWHERE.contains(&path.as_str()) {

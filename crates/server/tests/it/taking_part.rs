@@ -114,7 +114,8 @@ async fn completed_participants_balance_the_sides_and_a_freed_slot_is_taken_agai
         client.take(json!({ "id": format!("p{who}") }), ["left", "left", "right"]).await;
     }
     let hash = client.server.store().study_versions("shadow-puppets").await.unwrap()[0].version.clone();
-    let rows = client.server.store().answer_rows("shadow-puppets", &[hash.clone()]).await.unwrap();
+    let rows =
+        client.server.store().answer_rows("shadow-puppets", std::slice::from_ref(&hash)).await.unwrap();
     for item in ["a", "b", "c"] {
         let left =
             rows.iter().map(|row| &row.shown[&Role::Left]).filter(|s| s.item == item && s.condition == "pa");

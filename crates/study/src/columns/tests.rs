@@ -52,7 +52,7 @@ fn every_column_that_there_was_is_there_in_its_place_and_every_one_is_explained(
     }
     let column = |name: &str| codebook.iter().find(|column| column.name == name).unwrap();
     assert!(column("scale").meaning.contains("Device pixels per stimulus pixel"));
-    assert_eq!(column("arrangement").values.len(), 2);
+    assert_eq!(column("arrangement").values.len(), 4);
     assert!(column("input").values.iter().any(|value| value.value == "pen"));
 }
 

@@ -131,7 +131,7 @@ pub trait TrialRules: Sync {
     fn check(&self, sent: &Value) -> Result<Checked, Vec<FieldError>>;
 
     /// What a page sends: the columns of its rows, their types, units, ranges and meanings.
-    fn schema(&self) -> Record;
+    fn record(&self) -> &Record;
 
     /// What a stored answer says.
     ///
@@ -158,8 +158,8 @@ impl TrialKind {
     /// What this kind knows.
     pub fn rules(&self) -> &'static dyn TrialRules {
         match self {
-            TrialKind::TwoAlternative => &two_alternative::TwoAlternative,
-            TrialKind::TwoInterval(_) => &two_interval::TwoInterval,
+            TrialKind::TwoAlternative => &two_alternative::RULES,
+            TrialKind::TwoInterval(_) => &two_interval::RULES,
         }
     }
 

@@ -53,7 +53,7 @@ fn answers_that_break_a_rule_are_refused_with_field_value_and_rule() {
         "choice": "left", "rt": 812.5, "onset": 100.25, "time_elapsed": 5000, "trial_type": "two-alternative", "plugin_version": "1",
         "input": "pen", "scale": 1.0, "arrangement": "stack", "device_pixel_ratio": 2, "viewport": [1280, 800], "refresh_hz": null,
         "hidden_ms": 0, "min_visible_ms": 800, "css_width_px": 296.0, "reload_count": 0, "timestamp": "2026-11-22T10:30:00.000Z",
-        "frames": { "left": { "shown": [1, 2] } }, "something": "of its own",
+        "frames": { "left": { "fps": 12, "shown": 24 } }, "something": "of its own",
     });
     let rules = TrialKind::TwoAlternative.rules();
     assert_eq!(rules.check(&good).unwrap().answer, r#"{"choice":"left","rt_ms":812.5}"#);
@@ -66,7 +66,7 @@ fn answers_that_break_a_rule_are_refused_with_field_value_and_rule() {
         ("onset", json!(-0.5), "from 0"),
         ("scale", json!(101), "from 0 to 100"),
         ("input", json!("nose"), "\"pen\""),
-        ("arrangement", json!("above"), "\"side\" or \"stack\""),
+        ("arrangement", json!("above"), "\"side\", \"stack\", \"beside\" or \"below\""),
         ("viewport", json!([1280]), "a list of 2"),
         ("viewport", json!([1280, "800"]), "a number"),
         ("timestamp", json!("x".repeat(101)), "at most 100"),
@@ -91,16 +91,16 @@ fn answers_that_break_a_rule_are_refused_with_field_value_and_rule() {
 #[test]
 fn the_codebook_says_type_unit_meaning_and_values_of_every_column() {
     for kind in TrialKind::all() {
-        for column in kind.rules().schema().columns() {
+        for column in kind.rules().record().columns() {
             assert!(column.meaning.len() > 10, "{column:?}");
             assert!(column.kind == "text" || column.values.is_empty(), "{column:?}");
         }
     }
-    let columns = TrialKind::TwoAlternative.rules().schema().columns();
+    let columns = TrialKind::TwoAlternative.rules().record().columns();
     let column = |name: &str| columns.iter().find(|column| column.name == name).unwrap();
     assert_eq!((column("rt").kind.as_str(), column("rt").unit.as_str()), ("number", "ms"));
     let values = |name| column(name).values.iter().map(|v| v.value.as_str()).collect::<Vec<_>>();
-    assert_eq!(values("arrangement"), ["side", "stack"]);
+    assert_eq!(values("arrangement"), ["side", "stack", "beside", "below"]);
     assert_eq!(column("arrangement").values[1].meaning, "the right one below the left one");
     assert_eq!(values("input"), ["mouse", "touch", "pen", "keyboard"]);
     assert_eq!(column("viewport").kind, "list");

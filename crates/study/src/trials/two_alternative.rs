@@ -1,13 +1,11 @@
 //! Two pictures at once; which one?
 
-use super::{Checked, Observation, Role, Shown, Taken, TrialName, TrialRules, choice};
-use crate::schema::{FieldError, Record, worded};
+use super::choice::ChoiceOfTwo;
+use super::{Role, Taken, TrialName};
+use crate::schema::{Record, worded};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 use std::sync::LazyLock;
 use utoipa::ToSchema;
-
-const ROLES: [Role; 2] = [Role::Left, Role::Right];
 
 worded! {
     /// One of the two pictures.
@@ -26,6 +24,10 @@ worded! {
         Side = "side",
         /// the right one below the left one
         Stack = "stack",
+        /// side, in the word that the codebook used to have
+        Beside = "beside",
+        /// stack, in the word that the codebook used to have
+        Below = "below",
     }
 }
 
@@ -42,44 +44,9 @@ pub struct TwoAlternativeAnswer {
     pub taken: Taken,
 }
 
-pub(super) struct TwoAlternative;
-
-impl TrialRules for TwoAlternative {
-    fn name(&self) -> TrialName {
-        TrialName::TwoAlternative
-    }
-
-    fn roles(&self) -> &'static [Role] {
-        &ROLES
-    }
-
-    fn plan(&self, item: &str, target: &str, other: &str, target_first: bool) -> Shown<'static> {
-        choice::plan(ROLES, item, target, other, target_first)
-    }
-
-    fn check(&self, sent: &Value) -> Result<Checked, Vec<FieldError>> {
-        static SCHEMA: LazyLock<Record> = LazyLock::new(Record::of::<TwoAlternativeAnswer>);
-        choice::check(&SCHEMA, sent)
-    }
-
-    fn schema(&self) -> Record {
-        Record::of::<TwoAlternativeAnswer>()
-    }
-
-    fn observe<'a>(&self, shown: &Shown<'a>, answer: &str) -> Result<Observation<'a>, String> {
-        choice::observe(ROLES, shown, answer)
-    }
-
-    fn chosen(&self, answer: &str) -> Option<Role> {
-        choice::chosen(answer)
-    }
-
-    fn chose<'a>(&self, shown: &Shown<'a>, chose_first: bool, rt_ms: f64) -> Option<Observation<'a>> {
-        choice::chose(ROLES, shown, chose_first, rt_ms)
-    }
-
-    fn simulate(&self, chose_first: bool, rt_ms: f64) -> Value {
-        let choice = if chose_first { Side::Left } else { Side::Right };
-        json!({ "choice": choice, "rt": rt_ms, "arrangement": Arrangement::Side, "trial_type": self.name() })
-    }
-}
+/// What the kind knows.
+pub(super) static RULES: ChoiceOfTwo = ChoiceOfTwo {
+    name: TrialName::TwoAlternative,
+    roles: &[Role::Left, Role::Right],
+    record: LazyLock::new(Record::of::<TwoAlternativeAnswer>),
+};

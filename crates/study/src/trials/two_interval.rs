@@ -1,15 +1,13 @@
 //! One picture, then another; which one?
 
-use super::{Checked, Observation, Role, Shown, Taken, TrialName, TrialRules, choice};
+use super::choice::ChoiceOfTwo;
+use super::{Role, Taken, TrialName};
 use crate::fields::{Fields, number};
-use crate::schema::{FieldError, Record, worded};
+use crate::schema::{Record, worded};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 use std::sync::LazyLock;
 use toml::Value as Toml;
 use utoipa::ToSchema;
-
-const ROLES: [Role; 2] = [Role::First, Role::Second];
 
 /// How long each step of a two-interval trial is asked to last, in ms. A page rounds each to whole frames of its display.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -124,44 +122,9 @@ pub(super) fn read(block: &mut Fields<'_>) -> Option<Intervals> {
     })
 }
 
-pub(super) struct TwoInterval;
-
-impl TrialRules for TwoInterval {
-    fn name(&self) -> TrialName {
-        TrialName::TwoInterval
-    }
-
-    fn roles(&self) -> &'static [Role] {
-        &ROLES
-    }
-
-    fn plan(&self, item: &str, target: &str, other: &str, target_first: bool) -> Shown<'static> {
-        choice::plan(ROLES, item, target, other, target_first)
-    }
-
-    fn check(&self, sent: &Value) -> Result<Checked, Vec<FieldError>> {
-        static SCHEMA: LazyLock<Record> = LazyLock::new(Record::of::<TwoIntervalAnswer>);
-        choice::check(&SCHEMA, sent)
-    }
-
-    fn schema(&self) -> Record {
-        Record::of::<TwoIntervalAnswer>()
-    }
-
-    fn observe<'a>(&self, shown: &Shown<'a>, answer: &str) -> Result<Observation<'a>, String> {
-        choice::observe(ROLES, shown, answer)
-    }
-
-    fn chosen(&self, answer: &str) -> Option<Role> {
-        choice::chosen(answer)
-    }
-
-    fn chose<'a>(&self, shown: &Shown<'a>, chose_first: bool, rt_ms: f64) -> Option<Observation<'a>> {
-        choice::chose(ROLES, shown, chose_first, rt_ms)
-    }
-
-    fn simulate(&self, chose_first: bool, rt_ms: f64) -> Value {
-        let choice = if chose_first { Which::First } else { Which::Second };
-        json!({ "choice": choice, "rt": rt_ms, "trial_type": self.name() })
-    }
-}
+/// What the kind knows.
+pub(super) static RULES: ChoiceOfTwo = ChoiceOfTwo {
+    name: TrialName::TwoInterval,
+    roles: &[Role::First, Role::Second],
+    record: LazyLock::new(Record::of::<TwoIntervalAnswer>),
+};

@@ -7,10 +7,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use kelir_server::{Library, Made, Maker, Server, ServerConfig, Task, results};
+use kelir_render::encode;
+use kelir_server::{Library, Made, Maker, Selection, Server, ServerConfig, Task, VersionRef, With, results};
 use kelir_stats::pairwise::Model;
 use kelir_stats::random::Random;
-use kelir_store::{ImportedSession, NewResponse, PlannedSession, PlannedTrial, Store, StoredAnswers};
+use kelir_store::{
+    ImportedSession, NewAnswer, NextTrials, PlannedSession, PlannedTrial, StimulusHashes, Store,
+    StoredAnswers, StudyStimulus,
+};
 use kelir_study::analysis::{conditions_scale, summarise};
 use kelir_study::answers::Participant;
 use kelir_study::screening::screen;
@@ -99,25 +103,28 @@ async fn measure(data: &Path, people: u32) -> Result<Report> {
     std::fs::write(data.join("studies/rows.toml"), study_file())?;
     let study = Library::new(data).study("studies/rows.toml")?;
     let store = Store::open(data).await?;
-    store.put_study(&study).await?;
+    let shown = Shown::store(&store, &study).await?;
     let begun = Instant::now();
-    fill(&store, &study, people).await?;
+    fill(&store, &study, &shown, people).await?;
     let write_s = begun.elapsed().as_secs_f64();
 
-    let mut stored = StoredAnswers::new(&study);
+    let mut stored = StoredAnswers::new(&study, std::slice::from_ref(&shown.version));
     let cold = judged(&store, &study, &mut stored).await?;
-    let rows = u64::from(people) * study.trial_count() as u64;
+    let rows = u64::from(people) * study.most_trials() as u64;
     if cold.answers as u64 != rows {
         bail!("{} answers were read of {rows}", cold.answers);
     }
-    one_more(&store, &study).await?;
+    one_more(&store, &study, &shown).await?;
     let warm = judged(&store, &study, &mut stored).await?;
     store.close().await;
 
     let begun = Instant::now();
-    results::of_study(data, &study.id).await?;
+    let store = results::open_study(data, &study.id).await?;
+    let selection = Selection::of(&store, &study.id, None, &VersionRef::Current, &With::default()).await?;
+    results::results(&store, &selection).await?;
+    store.close().await;
     let command_s = begun.elapsed().as_secs_f64();
-    let (http_first_s, http_next_s) = over_http(data, &study).await?;
+    let (http_first_s, http_next_s) = over_http(data, &study, &shown).await?;
     Ok(Report {
         rows,
         participants: u64::from(people),
@@ -200,21 +207,47 @@ fn comparisons() -> impl Iterator<Item = (usize, usize)> {
     (0..CONDITIONS).flat_map(|i| (i + 1..CONDITIONS).map(move |j| (i, j)))
 }
 
+/// One picture for all items and conditions, and the version that it makes.
+struct Shown {
+    version: String,
+    file_hash: String,
+    hashes: StimulusHashes,
+}
+
+impl Shown {
+    async fn store(store: &Store, study: &StudyDefinition) -> Result<Shown> {
+        let size = study.size.map(|pixels| pixels as usize);
+        let picture = encode::png(&vec![0xff80_8080; size[0] * size[1]], size)?;
+        let info = store.put_stimulus("image/png", picture).await?;
+        let mut stimuli = Vec::new();
+        for block in &study.blocks {
+            for (item, condition) in
+                block.items.iter().flat_map(|i| block.conditions.iter().map(move |c| (i, c)))
+            {
+                stimuli.push(StudyStimulus {
+                    item: item.id.clone(),
+                    condition: condition.clone(),
+                    sha256: info.sha256.clone(),
+                    pixels_sha256: info.pixels_sha256.clone(),
+                    size: info.size,
+                    provenance: serde_json::json!({}),
+                });
+            }
+        }
+        let version = store.put_version(study, &stimuli).await?;
+        let hashes = StimulusHashes { sha256: info.sha256, pixels_sha256: info.pixels_sha256 };
+        Ok(Shown { version, file_hash: study.file_hash(), hashes })
+    }
+}
+
 /// Simulated participants, a fifth of a JOD between neighbouring conditions, through the store's own rows and chain.
-async fn fill(store: &Store, study: &StudyDefinition, people: u32) -> Result<()> {
-    let sha256 = store.put_stimulus("image/png", b"one picture for all".to_vec()).await?;
-    let config_hash = study.config_hash();
+async fn fill(store: &Store, study: &StudyDefinition, shown: &Shown, people: u32) -> Result<()> {
     let bar = progress::bar(u64::from(people), "participants");
     let mut next = 0;
     while next < people {
         let until = people.min(next + BATCH);
-        let simulated = |slot: u32| ImportedSession {
-            study_id: study.id.clone(),
-            config_hash: config_hash.clone(),
-            slot,
-            ..simulate(study, slot, &sha256)
-        };
-        store.import_sessions((next..until).map(simulated).collect()).await?;
+        let sessions = (next..until).map(|slot| simulate(study, slot, shown));
+        store.import_sessions(sessions.collect::<Result<_>>()?).await?;
         next = until;
         bar.set_position(u64::from(next));
     }
@@ -222,45 +255,38 @@ async fn fill(store: &Store, study: &StudyDefinition, people: u32) -> Result<()>
     Ok(())
 }
 
-fn simulate(study: &StudyDefinition, slot: u32, sha256: &str) -> ImportedSession {
+fn simulate(study: &StudyDefinition, slot: u32, shown: &Shown) -> Result<ImportedSession> {
     let mut random = Random::stream(study.seed, u64::from(slot));
     let plan = TrialPlan::for_slot(study, slot);
     let quality = |name: &str| name.trim_start_matches("spp-").parse::<f64>().unwrap_or_default() * 0.2;
-    let answers = plan
-        .trials
-        .iter()
-        .map(|trial| {
-            let p = Model::default().probability(quality(&trial.left) - quality(&trial.right));
-            let rt_ms = (7.0 + 0.6 * random.normal()).exp();
-            NewResponse {
-                trial_index: trial.trial_index,
-                chose_left: random.bernoulli(p),
-                rt_ms,
-                payload: format!("{{\"rt\":{rt_ms}}}"),
-            }
-        })
-        .collect();
-    let filled =
-        |trial| PlannedTrial { trial, left_sha256: sha256.to_owned(), right_sha256: sha256.to_owned() };
-    let planned = PlannedSession { seed: plan.seed, trials: plan.trials.into_iter().map(filled).collect() };
-    ImportedSession {
-        study_id: String::new(),
-        config_hash: String::new(),
+    let (mut answers, mut trials) = (Vec::new(), Vec::new());
+    for trial in plan.trials {
+        let rules = trial.trial.rules();
+        let conditions: Vec<f64> = trial.shown.values().map(|placed| quality(&placed.condition)).collect();
+        let p = Model::default().probability(conditions[0] - conditions[1]);
+        let sent = rules.simulate(random.bernoulli(p), (7.0 + 0.6 * random.normal()).exp());
+        let checked = rules.check(&sent).map_err(|errors| anyhow::anyhow!("{errors:?}"))?;
+        let (trial_index, payload) = (trial.trial_index, sent.to_string());
+        answers.push(NewAnswer { trial_index, answer: checked.answer, payload });
+        let stimuli = trial.shown.keys().map(|role| (*role, shown.hashes.clone())).collect();
+        trials.push(PlannedTrial { trial, stimuli });
+    }
+    Ok(ImportedSession {
+        study_id: study.id.clone(),
+        version: shown.version.clone(),
+        file_hash: shown.file_hash.clone(),
         slot,
-        planned,
+        planned: PlannedSession { seed: plan.seed, next: NextTrials { trials, more: plan.more } },
         answers,
         completion_code: Some("DONE".to_owned()),
-    }
+    })
 }
 
 /// A newcomer who has answered one trial.
-async fn one_more(store: &Store, study: &StudyDefinition) -> Result<()> {
-    let sha256 = store.put_stimulus("image/png", b"one picture for all".to_vec()).await?;
-    let mut session = simulate(study, 1_000_000_000, &sha256);
+async fn one_more(store: &Store, study: &StudyDefinition, shown: &Shown) -> Result<()> {
+    let mut session = simulate(study, 1_000_000_000, shown)?;
     session.answers.truncate(1);
     session.completion_code = None;
-    session.study_id = study.id.clone();
-    session.config_hash = study.config_hash();
     Ok(store.import_sessions(vec![session]).await?)
 }
 
@@ -278,7 +304,7 @@ impl Maker for Nobody {
 }
 
 /// Seconds of the first request for results after the server's start, and of the next, before which one answer came.
-async fn over_http(data: &Path, study: &StudyDefinition) -> Result<(f64, f64)> {
+async fn over_http(data: &Path, study: &StudyDefinition, shown: &Shown) -> Result<(f64, f64)> {
     let server = Server::start(ServerConfig {
         data: data.to_owned(),
         listen: SocketAddr::from(([127, 0, 0, 1], 0)),
@@ -307,7 +333,7 @@ async fn over_http(data: &Path, study: &StudyDefinition) -> Result<(f64, f64)> {
         if !answer.starts_with("HTTP/1.1 200") || !answer.contains("\"jod\"") {
             bail!("GET {path}: {}", answer.lines().next().unwrap_or_default());
         }
-        one_more(server.server().store(), study).await?;
+        one_more(server.server().store(), study, shown).await?;
     }
     server.shutdown().await;
     Ok((seconds[0], seconds[1]))

@@ -1,0 +1,29 @@
+//! Sessions brought in many at a time.
+
+use crate::setting::{IDLE, answer, append, begin, open};
+use kelir_store::ImportedSession;
+
+#[tokio::test(flavor = "multi_thread")]
+async fn imported_sessions_are_rows_of_the_same_chain_all_or_none() {
+    let (_folder, store, served) = open().await;
+    let session = begin(&store, &served, IDLE).await;
+    append(&store, &session, answer(0, true, 500.0)).await;
+    let imported = |trials: [u32; 3]| ImportedSession {
+        study_id: session.study_id.clone(),
+        version: session.version.clone(),
+        file_hash: session.file_hash.clone(),
+        slot: 1,
+        planned: served.plan(1),
+        answers: trials.map(|trial| answer(trial, trial == 1, 321.5)).to_vec(),
+        completion_code: Some("CODE".to_owned()),
+    };
+    assert!(store.import_sessions(vec![imported([0, 1, 2]), imported([0, 1, 3])]).await.is_err());
+    let chain = store.verify_chain(&session.study_id).await.unwrap();
+    assert_eq!(chain.rows, 1, "none of the two is stored");
+    store.import_sessions(vec![imported([0, 1, 2]), imported([2, 1, 0])]).await.unwrap();
+    append(&store, &session, answer(1, true, 500.0)).await;
+    let chain = store.verify_chain(&session.study_id).await.unwrap();
+    assert_eq!((chain.rows, chain.faults), (8, vec![]));
+    let counts = store.version_counts(&session.study_id, IDLE).await.unwrap()[&session.version];
+    assert_eq!((counts.participants.started, counts.participants.completed, counts.answers), (3, 2, 8));
+}
