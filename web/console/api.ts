@@ -21,7 +21,7 @@ export type Comparison = Schemas["Comparison"];
 
 const v1 = "/api/v1";
 
-export const login = (password: string) => request<void>(`${v1}/auth/session`, { method: "POST", body: { password } satisfies Schemas["Credentials"] });
+export const login = (password: string) => request<void>(`${v1}/auth/session`, { method: "POST", body: { password } satisfies Schemas["SignIn"] });
 export const logout = () => request<void>(`${v1}/auth/session`, { method: "DELETE" });
 export const fetchPaper = () => request<Paper>(`${v1}/papers/taylor-cameron`);
 export const fetchStudies = () => all<StudySummary>(`${v1}/studies`);
@@ -53,10 +53,10 @@ async function all<Item>(address: string): Promise<Item[]> {
   for (let cursor: string | null = null; ; ) {
     const page: Page<Item> = await request(cursor === null ? address : `${address}?cursor=${encodeURIComponent(cursor)}`);
     items.push(...page.items);
-    cursor = page.next_cursor ?? null;
+    cursor = page.next_cursor;
     if (cursor === null) return items;
   }
 }
 
 /** Any of the server's lists. */
-type Page<Item> = Omit<Schemas["Page_StudySummary"], "items"> & { items: Item[] };
+type Page<Item> = Omit<Schemas["StudyList"], "items"> & { items: Item[] };

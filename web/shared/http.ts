@@ -72,8 +72,11 @@ export function refusal(status: number, text: string, retryAfter: string | null)
   return new Refused(status, problem.code, explain(problem), wait);
 }
 
+/** What is read of a problem document: a later server's codes may be others than those that we know. */
+type Read = Partial<Omit<Problem, "code">> & { code: string };
+
 /** A problem document of ours has a code; a proxy's has none that we know. */
-function parsed(text: string): (Partial<Problem> & { code: string }) | null {
+function parsed(text: string): Read | null {
   try {
     const found: unknown = JSON.parse(text);
     return typeof found === "object" && found !== null && "code" in found && typeof found.code === "string" ? { ...found, code: found.code } : null;
@@ -83,7 +86,7 @@ function parsed(text: string): (Partial<Problem> & { code: string }) | null {
 }
 
 /** What went wrong, then each field: "/rt = -1: must be …". */
-function explain({ code, title, detail, errors }: Partial<Problem> & { code: string }): string {
+function explain({ code, title, detail, errors }: Read): string {
   const fields = (Array.isArray(errors) ? errors : []).map(({ pointer, rule, ...rest }) => `${pointer}${"value" in rest ? ` = ${JSON.stringify(rest.value)}` : ""}: ${rule}.`);
   return [detail ?? title ?? code, ...fields].join(" ");
 }

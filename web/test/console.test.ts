@@ -10,7 +10,7 @@ import { pageOf, selectionOf } from "../console/versions.ts";
 const stimulus = (item: string, condition: string, rmse: number | null): Stimulus => {
   const errors = { count: 1, bias: 0, rmse: rmse ?? 0, p999: 0, max: 0 };
   const error = rmse === null ? null : { reference: { technique: "mc" }, frames: [0], all: { ...errors, rmse: 1 }, penumbra: errors, floor: null };
-  return { item, condition, sha256: "0", provenance: { error } };
+  return { item, condition, sha256: "0", pixels_sha256: "0", provenance: { error } };
 };
 const block = (pair: string, chosen: number): BlockReport =>
   ({
@@ -53,7 +53,10 @@ test("provenance is believed only where it is what it should be", () => {
 });
 
 test("a study's readiness is said in words", () => {
-  const row: StudySummary = { id: "s", title: "S", file_hash: "0", status: "ready", most_trials: 1, participants: { started: 0, in_progress: 0, completed: 0 } };
+  const row: StudySummary = {
+    ...{ id: "s", title: "S", version: null, file_hash: "0", status: "ready", progress: null, reason: null, most_trials: 1 },
+    participants: { started: 0, in_progress: 0, completed: 0 },
+  };
   assert.equal(statusText(row), null);
   assert.match(statusText({ ...row, status: "preparing", progress: { done: 3, total: 10, stimulus: "x" } }) ?? "", /3 of 10 ready/);
   assert.match(statusText({ ...row, status: "preparing" }) ?? "", /being made\./);

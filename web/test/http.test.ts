@@ -19,9 +19,9 @@ test("every field that is wrong is named with its value and its rule", () => {
     { pointer: "/choice", rule: "must be \"left\" or \"right\"" },
     { pointer: "/onset", value: null, rule: "must be a number" },
   ];
-  const found = refusal(422, JSON.stringify({ code: "invalid", detail: "The answer has faults.", errors }), null);
+  const found = refusal(422, JSON.stringify({ code: "invalid_field", detail: "The answer has faults.", errors }), null);
   assert.equal(found.message, 'The answer has faults. /rt = -1: must be a number from 0 to 86400000. /choice: must be "left" or "right". /onset = null: must be a number.');
-  assert.equal(refusal(422, '{"code":"invalid","title":"Unprocessable","errors":7}', null).message, "Unprocessable");
+  assert.equal(refusal(422, '{"code":"invalid_field","title":"Unprocessable","errors":7}', null).message, "Unprocessable");
 });
 
 test("what may be tried again", () => {

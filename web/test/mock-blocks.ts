@@ -35,7 +35,7 @@ const size = (g: number): Schemas["EffectSize"] => ({ d: g * 1.025, d_interval: 
 const equivalent = (bounds: Schemas["Bounds"], p: number): Schemas["Equivalence"] => ({ bounds, p, p_lower: p / 2, p_upper: p, t_lower: 2, t_upper: -2, half_width: 0.5, interval_90: around(0, 0.2) });
 const bayes = (bf01: number): Schemas["JzsBayesFactor"] => ({ bf01, bf10: 1 / bf01, ln_bf10: -Math.log(bf01), prior_scale: Math.SQRT1_2 });
 const plan = (d: number, power: number): Schemas["TPlan"] => ({ n: 32, d, alpha: 0.05, power });
-const sample = ({ n, mean, sd, mu, t, df, p }: Schemas["BlockSummary"]): Schemas["TTest"] => ({ n, mu, mean: mean ?? 0, sd: sd ?? 0, t: t ?? 0, df: df ?? 0, p: p ?? 1 });
+const sample = ({ n, mean, sd, mu, t, df, p }: Schemas["BlockSummary"]): Schemas["OneSampleTTest"] => ({ n, mu, mean: mean ?? 0, sd: sd ?? 0, t: t ?? 0, df: df ?? 0, p: p ?? 1 });
 
 interface Judged {
   g: number;

@@ -12,10 +12,13 @@ export const versions = { current: hash("c0ffee00"), before: hash("beef0123"), p
 
 const people = (started: number, in_progress: number, completed: number): Schemas["Participants"] => ({ started, in_progress, completed });
 const studies: Schemas["StudySummary"][] = [
-  { id: study.id, title: study.title, version: versions.current, file_hash: hash("f11e"), status: "ready", most_trials: 5, participants: people(36, 2, 32) },
+  {
+    ...{ id: study.id, title: study.title, version: versions.current, file_hash: hash("f11e"), status: "ready", progress: null, reason: null },
+    ...{ most_trials: 5, participants: people(36, 2, 32) },
+  },
   {
     ...{ id: "empty", title: "A study that nobody has taken", version: null, file_hash: hash("0"), status: "preparing", most_trials: 3, participants: people(0, 0, 0) },
-    progress: { done: 3, total: 10, stimulus: "still-arjuna (mc)" },
+    ...{ progress: { done: 3, total: 10, stimulus: "still-arjuna (mc)" }, reason: null },
   },
 ];
 
@@ -54,7 +57,7 @@ function chosen(id: string, asked: string, pooledWith: string | null) {
   const named = asked === "current" ? all.find((v) => v.is_current) : all.find((v) => v.version.startsWith(asked));
   if (named === undefined) return null;
   const others = all.filter((v) => v !== named && (pooledWith === "all" || (pooledWith ?? "").split(",").includes(v.version)));
-  const counts = ({ version, participants, answers }: Schemas["StudyVersion"]): Schemas["VersionCounts"] => ({ version, sessions: participants.started, answers });
+  const counts = ({ version, participants, answers }: Schemas["StudyVersion"]): Schemas["PooledVersion"] => ({ version, sessions: participants.started, answers });
   const pooled = [named, ...others];
   const pilot = pooled.length > 1 && pooled.some((v) => v.version === versions.pilot);
   const sum = (of: keyof Schemas["Participants"]) => pooled.reduce((n, v) => n + v.participants[of], 0);
@@ -80,7 +83,7 @@ export const results =
     if (path === "/api/v1/studies") {
       // Two pages of one study each: who reads only the first sees half.
       const at = Number(query.get("cursor") ?? 0);
-      const page: Schemas["Page_StudySummary"] = { items: studies.slice(at, at + 1), next_cursor: at + 1 < studies.length ? String(at + 1) : null };
+      const page: Schemas["StudyList"] = { items: studies.slice(at, at + 1), next_cursor: at + 1 < studies.length ? String(at + 1) : null };
       return [200, page];
     }
     if (path === "/api/v1/papers/taylor-cameron") return [200, paper()];
@@ -88,7 +91,7 @@ export const results =
     const found = studies.find((s) => s.id === id);
     if (found === undefined) return null;
     if (rest === "") {
-      const page: Schemas["Page_StudyVersion"] = { items: served[id] ?? [] };
+      const page: Schemas["VersionList"] = { items: served[id] ?? [], next_cursor: null };
       return [200, page];
     }
     const [, asked = "", what] = rest.match(/^\/([^/]+)\/(.+)$/) ?? [];

@@ -49,7 +49,7 @@ export interface Options {
   grow?: { start: number; most: number } | null;
 }
 
-export const problem = (status: number, code: string, detail: string, more: Partial<Schemas["Problem"]> = {}): Reply => {
+export const problem = (status: number, code: Schemas["ProblemCode"], detail: string, more: Partial<Schemas["Problem"]> = {}): Reply => {
   const body: Schemas["Problem"] = { type: "about:blank", title: code, status, code, detail, ...more };
   return [status, body];
 };
@@ -105,14 +105,14 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
   const signIn = (method: string, body: unknown): Reply | null => {
     const mine = { "set-cookie": "kelir_session=mock; HttpOnly; SameSite=Strict; Path=/" };
     if (method === "POST") {
-      researcher = (body as Schemas["Credentials"] | undefined)?.password === "wayang";
+      researcher = (body as Schemas["SignIn"] | undefined)?.password === "wayang";
       return researcher ? [204, null, mine] : problem(401, "wrong_password", "That is not the password.");
     }
     if (method === "DELETE") {
       researcher = false;
       return [204, null];
     }
-    const name: Schemas["Researcher"] = { name: "researcher" };
+    const name: Schemas["SignedIn"] = { name: "researcher" };
     return researcher ? [200, name] : problem(401, "unauthorized", "Sign in first.");
   };
 
@@ -151,7 +151,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
       send(status, status < 400 ? "application/json" : "application/problem+json", data === null ? "" : JSON.stringify(data), { "cache-control": "no-store", ...headers });
     const planned = fault({ method, path, body: text === "" ? undefined : JSON.parse(text) });
     if (planned === "hang up") return void req.socket.destroy();
-    if (planned !== null && planned.after !== true) return json(planned.body === undefined ? problem(planned.status, "mock", "A planned fault.") : [planned.status, planned.body]);
+    if (planned !== null && planned.after !== true) return json(planned.body === undefined ? problem(planned.status, "internal", "A planned fault.") : [planned.status, planned.body]);
     if (path.startsWith("/api/")) {
       log.push({ method, path, query: search, text });
       const answer = api(method, path, query, text, req.headers.authorization?.replace(/^Bearer /, ""));

@@ -162,8 +162,8 @@ test("new answers change the counts and not what somebody is just choosing", asy
 test("a study whose first version is still being made has a page", async (t) => {
   const stuff = material();
   const unborn = (path, query) => {
-    if (path === "/api/v1/studies/empty/versions") return [200, { items: [] }];
-    if (path.startsWith("/api/v1/studies/empty/versions/")) return problem(409, "not_ready", "No version has been served yet.");
+    if (path === "/api/v1/studies/empty/versions") return [200, { items: [], next_cursor: null }];
+    if (path.startsWith("/api/v1/studies/empty/versions/")) return problem(404, "not_found", "There is no such version.");
     return results(stuff)(path, query);
   };
   const v = await visit(t, { stuff, results: unborn });

@@ -69,7 +69,7 @@ test("a lost acknowledgement costs nothing and doubles nothing", async (t) => {
 test("an answer that the server refuses for good is kept and said, and no code is shown", async (t) => {
   let refuse = true;
   const errors = [{ pointer: "/rt", value: -1, rule: "must be a number from 0 to 86400000" }];
-  const [, body] = problem(422, "invalid_answer", "The answer has a fault.", { errors });
+  const [, body] = problem(422, "invalid_field", "The answer has a fault.", { errors });
   const v = await visit(t, { fault: ({ method, path }) => (refuse && method === "PUT" && path.endsWith("/trials/1") ? { status: 422, body } : null) });
   await begin(v);
   await answer(v, 0, 5);

@@ -59,6 +59,8 @@ export async function begin({ hook, page }, of = "5") {
 export async function answer({ hook, page }, from, to, choice = "left", of = "5") {
   for (let i = from; i < to; i++) {
     await position(page, i, of);
+    await hook(`choice-${choice}`).waitFor();
+    await painted(page);
     await hook(`choice-${choice}`).click();
   }
 }
