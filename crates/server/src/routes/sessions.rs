@@ -1,6 +1,6 @@
 //! Taking part: a session from its beginning to its code. Conditions never leave the server.
 
-use super::studies::StudyPath;
+use super::studies::{StudyPath, told};
 use super::{Answered, Fresh};
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
@@ -236,6 +236,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     Ok(SessionState {
         session_id: session.session_id.clone(),
         study_id: session.study_id.clone(),
+        study: told(&study),
         status,
         consented: session.consented_at.is_some(),
         more: session.more,
