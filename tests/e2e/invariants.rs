@@ -1,6 +1,8 @@
-//! The rooms' walls: which crate may know which library, read from `cargo metadata`.
+//! The rooms' walls: which crate may know which library, read from `cargo metadata`; where alone a kind of trial is known.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
@@ -121,4 +123,53 @@ fn a_broken_wall_is_seen() {
     assert!(found.iter().any(|v| v == "kelir-stats reaches axum: it must stay pure"), "{found:?}");
     // axum brings tokio, and study builds on stats: both are seen through the chain.
     assert!(found.iter().any(|v| v == "kelir-stats reaches tokio: it must stay pure"), "{found:?}");
+}
+
+/// Where a kind of trial may be named outside its own folders: what wrote and reads the first layout knew one kind.
+const OF_THE_FIRST_LAYOUT: [&str; 2] = ["crates/store/src/first_chain.rs", "crates/store/src/upgrade.rs"];
+
+/// Files of these folders that name one of the kinds, as `file: name`. Tests may.
+fn naming_kinds(root: &Path, kinds: &[String]) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut open: Vec<PathBuf> =
+        ["crates", "web/participant", "web/console", "web/shared"].map(|f| root.join(f)).into();
+    while let Some(path) = open.pop() {
+        let name = path.strip_prefix(root).expect("below").to_string_lossy().into_owned();
+        let of_a_kind =
+            name == "crates/study/src/trials" || kinds.iter().any(|k| name.ends_with(&format!("trials/{k}")));
+        let file = path.file_stem().expect("a name").to_string_lossy();
+        if of_a_kind || ["tests", "node_modules"].contains(&&*file) || OF_THE_FIRST_LAYOUT.contains(&&*name) {
+            continue;
+        }
+        if path.is_dir() {
+            open.extend(fs::read_dir(&path).expect("folder").map(|entry| entry.expect("entry").path()));
+        } else if path.extension().is_some_and(|e| e == "rs" || e == "ts") {
+            let text = fs::read_to_string(&path).expect("text");
+            let named = |kind: &String| {
+                let variant: String = kind.split('-').map(|w| w[..1].to_uppercase() + &w[1..]).collect();
+                text.contains(&format!("\"{kind}\"")) || text.contains(&variant)
+            };
+            found.extend(kinds.iter().filter(|k| named(k)).map(|kind| format!("{name}: {kind}")));
+        }
+    }
+    found
+}
+
+#[test]
+fn a_kind_of_trial_is_a_variant_and_a_folder() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("root");
+    let folders =
+        fs::read_dir(root.join("web/participant/trials")).expect("kinds").map(|e| e.expect("entry").path());
+    let kinds: Vec<String> = folders
+        .filter(|folder| folder.join("index.ts").exists())
+        .map(|folder| folder.file_name().expect("name").to_string_lossy().into_owned())
+        .collect();
+    assert!(kinds.len() > 1, "{kinds:?}");
+    let list = fs::read_to_string(root.join("crates/study/src/trials/mod.rs")).expect("list");
+    for kind in &kinds {
+        assert!(list.contains(&format!("= \"{kind}\",")), "{kind} has a folder and no name");
+    }
+    assert_eq!(naming_kinds(root, &kinds), Vec::<String>::new());
+    // Control: a word that many files have is found in them.
+    assert!(!naming_kinds(root, &["studies".to_owned()]).is_empty());
 }

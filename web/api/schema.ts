@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 99aa99cb2ddb44b81e9dba7f7eac77bb0f617a2feb9c7d2ca32d2f2250c70bb3 f6eadde0417624be7f2b764096c87469b48abe887387a31a3b1b3d3db2821bca
+// Generated from openapi.json by `npm run types`; do not edit. 7276f8ab9fd3e8e78c2d4900b8ac1704565c0c36cc4644d2ee450a07ff9696a7 8930e7ba08fb0fa8877af77bda0c550392e406f64a4eb6bcae428471b6b4a9c0
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -472,7 +472,7 @@ export interface components {
              */
             trials: number;
         };
-        /** @description The answer to a trial, as its kind asks. */
+        /** @description The answer to a trial, as its kind asks. Keys beside these are kept as they come. */
         Answer: components["schemas"]["TwoAlternativeAnswer"] | components["schemas"]["TwoIntervalAnswer"];
         /** @description How the two pictures stood. */
         Arrangement: "side" | "stack" | "beside" | "below";
@@ -581,6 +581,8 @@ export interface components {
             items: number;
             /** @description Stills or animations. */
             kind: components["schemas"]["Kind"];
+            /** @description How the two pictures of its trials stand to each other, in words. */
+            layout: string;
             /**
              * Format: double
              * @description Mean number of target choices; null when n = 0.
@@ -618,7 +620,7 @@ export interface components {
             /** @description Block's title. */
             title: string;
             /** @description How its trials ask. */
-            trial: string;
+            trial: components["schemas"]["TrialName"];
         };
         /** @description A bootstrap interval. */
         Bootstrap: {
@@ -2401,7 +2403,7 @@ export interface components {
             item_index: number;
             /** @description Stills or animations. */
             kind: components["schemas"]["Kind"];
-            settings: components["schemas"]["Intervals"] | null;
+            settings: components["schemas"]["TrialSettings"] | null;
             /** @description What is shown, by role: `left` and `right`, or `first` and `second`. */
             shown: {
                 [key: string]: components["schemas"]["StimulusRef"];
@@ -2431,6 +2433,8 @@ export interface components {
         };
         /** @description The names of the kinds of trials. */
         TrialName: "two-alternative" | "two-interval";
+        /** @description The settings of a trial's kind, as its page needs them. */
+        TrialSettings: components["schemas"]["Intervals"];
         /** @description What a page sends for a two-alternative trial. */
         TwoAlternativeAnswer: components["schemas"]["Taken"] & {
             arrangement?: components["schemas"]["Arrangement"] | null;

@@ -24,8 +24,7 @@ function positions(scale: NonNullable<Results["scale"]>): HTMLElement {
 }
 
 function blockFigure(block: Block): HTMLElement {
-  const shown = block.trial === "two-interval" ? ", one after the other" : "";
-  const what = `${block.conditions.join(" against ")}, ${count(block.items, "pair")} of ${block.kind === "still" ? "stills" : "animations"}${shown}`;
+  const what = `${block.conditions.join(" against ")}, ${count(block.items, "pair")} of ${block.kind === "still" ? "stills" : "animations"}, ${block.layout}`;
   const plot =
     block.n > 0
       ? choiceDistribution(block)

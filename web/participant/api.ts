@@ -2,17 +2,15 @@
 import type { components } from "../api/schema.ts";
 import { request } from "../shared/http.ts";
 
-type Schemas = components["schemas"];
+export type Schemas = components["schemas"];
 export type Study = Schemas["Study"];
 export type State = Schemas["SessionState"];
 export type Trial = Schemas["Trial"];
 export type StimulusRef = Schemas["StimulusRef"];
 export type Acknowledgement = Schemas["Acknowledgement"];
 export type Completion = Schemas["Completion"];
-export type TwoAlternativeAnswer = Schemas["TwoAlternativeAnswer"];
-export type TwoIntervalAnswer = Schemas["TwoIntervalAnswer"];
-/** What is sent for one trial; times in ms. */
-export type Answer = TwoAlternativeAnswer | TwoIntervalAnswer;
+/** What is sent for one trial, as its kind asks; times in ms. */
+export type Answer = Schemas["Answer"];
 
 /** Who is asking: the session and its secret. */
 export interface Credentials {

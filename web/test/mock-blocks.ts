@@ -5,7 +5,7 @@ type Schemas = components["schemas"];
 type Test = Pick<Schemas["BlockSummary"], "mean" | "sd" | "t" | "df" | "p" | "note">;
 
 const block = (id: string, title: string, kind: Schemas["Kind"], other: string, counts: number[], test: Test): Schemas["BlockSummary"] => ({
-  ...{ id, title, kind, trial: "two-alternative", conditions: ["pa", other], target: "pa", items: counts.length - 1 },
+  ...{ id, title, kind, trial: "two-alternative", layout: "side by side", conditions: ["pa", other], target: "pa", items: counts.length - 1 },
   n: counts.reduce((a, b) => a + b, 0),
   incomplete: 0,
   counts: Object.fromEntries(counts.map((n, k) => [k, n])),

@@ -32,16 +32,13 @@ pub(crate) fn section(block: &BlockReport) -> Section {
     Section::new(title(block), pieces)
 }
 
-/// What is shown, and how where that is not at once.
+/// What is shown, and how.
 fn shown(summary: &BlockSummary) -> String {
     let kind = match summary.kind {
         kelir_study::Kind::Still => "still pictures",
         kelir_study::Kind::Animation => "animations",
     };
-    match summary.trial.as_str() {
-        "two-interval" => format!("{kind}, one after the other"),
-        _ => kind.to_owned(),
-    }
+    format!("{kind}, {}", summary.layout)
 }
 
 fn title(block: &BlockReport) -> String {

@@ -6,7 +6,8 @@ use crate::format::{MISSING, count, fixed, p_value, percent, range, share, signi
 use crate::numbers::{Sample, of_scale};
 use crate::{StudyReport, figures, headline, sources};
 use kelir_study::screening::Exclusion;
-use kelir_study::{Condition, Kind, StudyDefinition, TrialKind};
+use kelir_study::{Condition, Kind, StudyDefinition};
+use std::collections::BTreeSet;
 
 /// Excluded participants that are named one by one.
 const MOST_LISTED: usize = 100;
@@ -123,10 +124,7 @@ fn design(report: &StudyReport) -> Section {
         let [a, b] = &block.conditions;
         Row::Cells(vec![
             Cell::text(title),
-            Cell::text(match block.trial {
-                TrialKind::TwoAlternative => kind.to_owned(),
-                TrialKind::TwoInterval(_) => format!("{kind}, one after the other"),
-            }),
+            Cell::text(format!("{kind}, {}", block.trial.rules().layout())),
             Cell::text(format!("{a} / {b}")),
             Cell::text(&block.target),
             Cell::whole(block.items.len() as u64),
@@ -161,13 +159,10 @@ fn design(report: &StudyReport) -> Section {
 }
 
 /// How the two pictures of a trial are shown.
-fn shown(study: &StudyDefinition) -> &'static str {
-    let at_once = study.blocks.iter().filter(|block| block.trial == TrialKind::TwoAlternative).count();
-    match at_once {
-        0 => "one after the other",
-        n if n == study.blocks.len() => "at a time side by side",
-        _ => "at a time side by side or one after the other, as the table says",
-    }
+fn shown(study: &StudyDefinition) -> String {
+    let layouts: BTreeSet<&str> = study.blocks.iter().map(|block| block.trial.rules().layout()).collect();
+    let says = if layouts.len() > 1 { ", as the table says" } else { "" };
+    format!("{}{says}", Vec::from_iter(layouts).join(" or "))
 }
 
 fn scale(report: &StudyReport) -> Option<Section> {
@@ -175,8 +170,7 @@ fn scale(report: &StudyReport) -> Option<Section> {
     let title = "All conditions on one scale";
     let Some(found) = &judged.scale else {
         // Two conditions have no scale, and nobody misses it.
-        let names: std::collections::BTreeSet<&String> =
-            judged.blocks.iter().flat_map(|b| &b.summary.conditions).collect();
+        let names: BTreeSet<&String> = judged.blocks.iter().flat_map(|b| &b.summary.conditions).collect();
         let note = judged.scale_note.as_ref().filter(|_| names.len() > 2 && !report.is_empty())?;
         return Some(Section::new(title, vec![Piece::Text(note.clone())]));
     };

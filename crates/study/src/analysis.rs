@@ -2,6 +2,7 @@
 
 use crate::answers::{Participant, compares, conditions, tallies};
 use crate::definition::{Kind, StudyDefinition};
+use crate::trials::TrialName;
 use kelir_stats::inference::t_test_from_counts;
 use kelir_stats::pairwise::{Scale, ScaleOptions, Wins, scale};
 use serde::Serialize;
@@ -18,7 +19,9 @@ pub struct BlockSummary {
     /// Block's title.
     pub title: String,
     /// How its trials ask.
-    pub trial: String,
+    pub trial: TrialName,
+    /// How the two pictures of its trials stand to each other, in words.
+    pub layout: String,
     /// Stills or animations.
     pub kind: Kind,
     /// The two conditions.
@@ -65,7 +68,8 @@ pub fn summarise(study: &StudyDefinition, participants: &[&Participant]) -> Vec<
             BlockSummary {
                 id: block.id.clone(),
                 title: block.title.clone(),
-                trial: block.trial.name().to_owned(),
+                trial: block.trial.rules().name(),
+                layout: block.trial.rules().layout().to_owned(),
                 kind: block.kind,
                 conditions: block.conditions.clone(),
                 target: block.target.clone(),

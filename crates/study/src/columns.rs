@@ -4,7 +4,7 @@
 use crate::definition::{Block, Kind, StudyDefinition};
 use crate::plan::Trial;
 use crate::schema::{Column, Record, worded};
-use crate::trials::{Role, TrialKind};
+use crate::trials::{Role, TrialKind, TrialName};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -47,12 +47,12 @@ pub struct SessionColumns {
 }
 
 /// What a row says of its trial and answer, beside what the page sent.
-#[derive(Clone, Debug, Default, Serialize, ToSchema)]
+#[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct TrialColumns {
     /// Place of the trial in the session, from 0.
     pub trial_index: u32,
-    /// Kind of the trial: two-alternative (two pictures at once) or two-interval (one after the other).
-    pub trial_kind: String,
+    /// Kind of the trial.
+    pub trial_kind: TrialName,
     /// Block.
     pub block_id: String,
     /// Place of the block in the study, from 0.
@@ -296,7 +296,7 @@ fn trial_columns(answered: &Answered<'_>) -> TrialColumns {
         trial.shown.keys().filter_map(|role| answered.sha256.get(role).copied()).collect();
     TrialColumns {
         trial_index: trial.trial_index,
-        trial_kind: trial.trial.name().to_owned(),
+        trial_kind: trial.trial.rules().name(),
         block_id: trial.block_id.clone(),
         block_index: trial.block_index,
         item_id: trial.item_id.clone(),

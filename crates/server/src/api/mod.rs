@@ -1,7 +1,6 @@
 //! The wire: every type that a request or an answer is made of, typed once. The OpenAPI document, the checks of what comes in and the
 //! pages' TypeScript are read from these.
 
-mod answers;
 mod auth;
 mod lists;
 mod problem;
@@ -10,8 +9,8 @@ mod sessions;
 mod studies;
 mod versions;
 
-pub use answers::Answer;
 pub use auth::{SignIn, SignedIn};
+pub use kelir_study::trials::Answer;
 pub use lists::ListQuery;
 pub use problem::{Problem, ProblemCode, StoredAnswer};
 pub use sessions::{

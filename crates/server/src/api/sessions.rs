@@ -3,7 +3,7 @@
 use super::Study;
 use kelir_study::Kind;
 use kelir_study::schema::worded;
-use kelir_study::trials::{Intervals, Role, TrialName};
+use kelir_study::trials::{Role, TrialName, TrialSettings};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -74,7 +74,7 @@ pub struct Trial {
     pub shown: BTreeMap<Role, StimulusRef>,
     /// Settings of its kind; null for kinds that have none.
     #[schema(required)]
-    pub settings: Option<Intervals>,
+    pub settings: Option<TrialSettings>,
     /// Width of its stimuli in pixels.
     pub width: u32,
     /// Height of its stimuli in pixels.

@@ -16,7 +16,7 @@ use kelir_store::{
     Appended, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session,
     StimulusHashes, sha256_hex,
 };
-use kelir_study::{Decision, StudyDefinition, TrialKind, TrialPlan, next_trials};
+use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -267,10 +267,7 @@ fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -
         item_index: trial.item_index,
         kind: trial.kind,
         shown: planned.stimuli.iter().map(|(role, hashes)| (*role, stimulus(&hashes.sha256))).collect(),
-        settings: match &trial.trial {
-            TrialKind::TwoInterval(intervals) => Some(intervals.clone()),
-            TrialKind::TwoAlternative => None,
-        },
+        settings: trial.trial.settings(),
         width,
         height,
         answered: answered.contains(&trial.trial_index),

@@ -184,7 +184,7 @@ fn moments_are_those_of_many_simulated_observers() {
                 [[truth]]\nblocks = [\"pref\"]\npreference = 0.7\nicc = 0.3\nlapse = 0.2\n";
     let design = design(study, text);
     let answers = Crowd::new(&design).take(0);
-    for (b, (_, items)) in crate::answers::blocks(&design.study).enumerate() {
+    for (b, (_, items)) in blocks(&design.study).enumerate() {
         let count = |p: &&Participant| p.answers_to(&items).iter().filter(|g| g.chose_target).count() as f64;
         let counts: Vec<f64> = answers.participants().iter().map(count).collect();
         let n = counts.len() as f64;

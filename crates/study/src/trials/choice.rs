@@ -19,6 +19,8 @@ struct Answer<'a> {
 pub(super) struct ChoiceOfTwo {
     pub(super) name: TrialName,
     pub(super) roles: &'static [Role; 2],
+    /// How the two stand to each other.
+    pub(super) layout: &'static str,
     /// What a page sends.
     pub(super) record: LazyLock<Record>,
 }
@@ -30,6 +32,10 @@ impl TrialRules for ChoiceOfTwo {
 
     fn roles(&self) -> &'static [Role] {
         self.roles
+    }
+
+    fn layout(&self) -> &'static str {
+        self.layout
     }
 
     fn plan(&self, item: &str, target: &str, other: &str, target_first: bool) -> Shown<'static> {

@@ -1,6 +1,7 @@
 //! Kinds of trials: what each shows in which role, what an answer to it is, and what that answer says.
 //!
-//! Adding one is a variant of [`TrialKind`] with its file here, and a folder of its name in `web/participant/trials/`.
+//! Adding one is a variant of [`TrialKind`], with what the compiler then asks for in this file and a file of its own beside it, and a
+//! folder of its name in `web/participant/trials/`. Nothing else in the house knows which kinds there are; a test holds it to that.
 
 mod choice;
 mod taken;
@@ -30,6 +31,24 @@ pub enum TrialKind {
     TwoAlternative,
     /// One picture, then another; which one?
     TwoInterval(Intervals),
+}
+
+/// The settings of a trial's kind, as its page needs them.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum TrialSettings {
+    /// Of a two-interval trial.
+    TwoInterval(Intervals),
+}
+
+/// The answer to a trial, as its kind asks. Keys beside these are kept as they come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Answer {
+    /// To a two-alternative trial.
+    TwoAlternative(TwoAlternativeAnswer),
+    /// To a two-interval trial.
+    TwoInterval(TwoIntervalAnswer),
 }
 
 worded! {
@@ -121,6 +140,9 @@ pub trait TrialRules: Sync {
     /// The roles that its stimuli have, in the order shown.
     fn roles(&self) -> &'static [Role];
 
+    /// How its stimuli stand to each other, as words after "two pictures".
+    fn layout(&self) -> &'static str;
+
     /// What is shown where, with the target before or after the other condition.
     fn plan(&self, item: &str, target: &str, other: &str, target_first: bool) -> Shown<'static>;
 
@@ -166,6 +188,22 @@ impl TrialKind {
     /// The kind's name in study files and data.
     pub fn name(&self) -> &'static str {
         self.rules().name().as_str()
+    }
+
+    /// Its settings for the page; `None` for a kind that has none.
+    pub fn settings(&self) -> Option<TrialSettings> {
+        match self {
+            TrialKind::TwoAlternative => None,
+            TrialKind::TwoInterval(intervals) => Some(TrialSettings::TwoInterval(intervals.clone())),
+        }
+    }
+
+    /// How it shows its pictures, for a paper's methods: words after "the two pictures were shown".
+    pub fn presentation(&self) -> String {
+        match self {
+            TrialKind::TwoAlternative => two_alternative::PRESENTATION.to_owned(),
+            TrialKind::TwoInterval(intervals) => two_interval::presentation(intervals),
+        }
     }
 
     /// Reads a block's `trial` and `[blocks.trial_settings]`; `None` where something is wrong, which has been reported.

@@ -44,9 +44,14 @@ pub struct TwoAlternativeAnswer {
     pub taken: Taken,
 }
 
+/// How the pictures are shown, for a paper's methods.
+pub(super) const PRESENTATION: &str =
+    "beside each other, or below each other in a narrow window (two-alternative forced choice)";
+
 /// What the kind knows.
 pub(super) static RULES: ChoiceOfTwo = ChoiceOfTwo {
     name: TrialName::TwoAlternative,
     roles: &[Role::Left, Role::Right],
+    layout: "side by side",
     record: LazyLock::new(Record::of::<TwoAlternativeAnswer>),
 };

@@ -122,9 +122,19 @@ pub(super) fn read(block: &mut Fields<'_>) -> Option<Intervals> {
     })
 }
 
+/// How the pictures are shown, for a paper's methods.
+pub(super) fn presentation(i: &Intervals) -> String {
+    format!(
+        "one after the other (two-interval forced choice): a fixation cross for {} ms, the first picture for {} ms, a mask for {} ms and \
+         the second picture for {} ms, each rounded to whole frames of the participant's display",
+        i.fixation_ms, i.first_ms, i.mask_ms, i.second_ms
+    )
+}
+
 /// What the kind knows.
 pub(super) static RULES: ChoiceOfTwo = ChoiceOfTwo {
     name: TrialName::TwoInterval,
     roles: &[Role::First, Role::Second],
+    layout: "one after the other",
     record: LazyLock::new(Record::of::<TwoIntervalAnswer>),
 };

@@ -1,6 +1,6 @@
 /** jsPsych plugin: two pictures of equal size, stills or animations; which one? By mouse, touch, pen or the arrow keys. */
 import { type JsPsych, type JsPsychPlugin, ParameterType, type TrialType } from "jspsych";
-import type { TwoAlternativeAnswer } from "../../api.ts";
+import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Pictures } from "../../stimuli.ts";
 import { commonData, commonParameters } from "../module.ts";
@@ -59,7 +59,7 @@ export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
       hidden_ms: rounded(hidden),
       min_visible_ms: rounded(Math.max(0, rt - hidden)),
       ...(play.log() ?? {}),
-    } satisfies TwoAlternativeAnswer;
+    } satisfies Schemas["TwoAlternativeAnswer"];
     trial.on_choice?.(data);
     stage.mark(side);
     await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));

@@ -1,6 +1,6 @@
 /** jsPsych plugin: two pictures in one place, one after the other and each for its time; which one? */
 import { type JsPsych, type JsPsychPlugin, ParameterType, type TrialType } from "jspsych";
-import type { TwoIntervalAnswer } from "../../api.ts";
+import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Pictures } from "../../stimuli.ts";
 import { commonData, commonParameters } from "../module.ts";
@@ -73,7 +73,7 @@ export default class TwoIntervalPlugin implements JsPsychPlugin<Info> {
       shown_ms: shown.ms,
       restarts,
       ...(frames === null ? {} : { frames }),
-    } satisfies TwoIntervalAnswer;
+    } satisfies Schemas["TwoIntervalAnswer"];
     trial.on_choice?.(data);
     stage.mark(role);
     await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));

@@ -2,8 +2,8 @@
 
 use super::{Text, count};
 use crate::adaptive::{Adaptive, Track};
-use crate::definition::{Block, Kind, StudyDefinition};
-use crate::trials::{Intervals, TrialKind};
+use crate::definition::{Kind, StudyDefinition};
+use std::collections::BTreeMap;
 
 const LEVITT: &str = "Levitt, H. (1971). Transformed up-down methods in psychoacoustics. Journal of the Acoustical Society of America, 49(2B), 467–477.";
 const KAERNBACH: &str = "Kaernbach, C. (1991). Simple adaptive testing with the weighted up-down method. Perception & Psychophysics, 49(3), 227–229.";
@@ -33,15 +33,14 @@ fn design(study: &StudyDefinition) -> String {
     format!(
         "Participants saw {} of pictures of {width} × {height} pixels ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
          \"{}\" They had to choose one of the two pictures of each trial. {}{catch} Blocks came in a fixed order and items within a block in a \
-         random one. {} were balanced within participants and, over participants, item by item (mirrored plans from the seed {}, given to \
+         random one. Which of the two came first (on the left, above or earlier) was balanced within participants and, over participants, item by item (mirrored plans from the seed {}, given to \
          the lowest place in the design that no completed or active session held).",
         pairs(study),
         kinds.join(", "),
         count(study.blocks.len(), "block"),
         study.surround,
         study.question,
-        presentation(study).join(" "),
-        if one_after_the_other(study).next().is_some() { "Sides and order" } else { "Sides" },
+        presentation(study),
         study.seed,
     )
 }
@@ -52,31 +51,20 @@ fn pairs(study: &StudyDefinition) -> String {
     format!("{most}{}", count(study.most_trials(), "pair"))
 }
 
-fn one_after_the_other(study: &StudyDefinition) -> impl Iterator<Item = (&Block, &Intervals)> {
-    study.blocks.iter().filter_map(|block| match &block.trial {
-        TrialKind::TwoInterval(intervals) => Some((block, intervals)),
-        TrialKind::TwoAlternative => None,
-    })
-}
-
 /// How each kind of trial shows its pictures.
-fn presentation(study: &StudyDefinition) -> Vec<String> {
-    let mut sentences: Vec<String> = one_after_the_other(study)
-        .map(|(block, i)| {
-            format!(
-                "In the block \"{}\" one came after the other (two-interval forced choice): a fixation cross for {} ms, the first picture for {} \
-                 ms, a mask for {} ms and the second picture for {} ms, each rounded to whole frames of the participant's display.",
-                block.title, i.fixation_ms, i.first_ms, i.mask_ms, i.second_ms
-            )
-        })
-        .collect();
-    if study.blocks.iter().any(|block| block.trial == TrialKind::TwoAlternative) {
-        let the = if sentences.is_empty() { "The" } else { "In the other blocks the" };
-        sentences.push(format!(
-            "{the} two stood beside each other, or below each other in a narrow window (two-alternative forced choice)."
-        ));
+fn presentation(study: &StudyDefinition) -> String {
+    let mut titles: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for block in &study.blocks {
+        titles.entry(block.trial.presentation()).or_default().push(format!("\"{}\"", block.title));
     }
-    sentences
+    let everywhere = titles.len() < 2;
+    let of = |titles: Vec<String>| match titles.len() {
+        _ if everywhere => "The".to_owned(),
+        1 => format!("In the block {} the", titles[0]),
+        _ => format!("In the blocks {} the", titles.join(", ")),
+    };
+    let sentences = titles.into_iter().map(|(how, titles)| format!("{} two were shown {how}.", of(titles)));
+    Vec::from_iter(sentences).join(" ")
 }
 
 /// Which procedure chose the levels of adaptive blocks.
