@@ -12,7 +12,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use sqlx::Row;
 use sqlx::sqlite::SqliteConnection;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// A trial as sessions used to hold it.
 #[derive(Deserialize)]
@@ -43,9 +43,9 @@ pub(crate) async fn from_first_layout(tx: &mut SqliteConnection, files: &Files) 
         return Ok(());
     }
     sqlx::query("PRAGMA defer_foreign_keys = ON").execute(&mut *tx).await?;
-    hash_pixels(tx, files).await?;
+    let pixels = hash_pixels(tx, files).await?;
     for file in old_files(tx).await? {
-        bring_over(tx, &file).await?;
+        bring_over(tx, &file, &pixels).await?;
     }
     for done in [
         "DROP TABLE study_stimuli",
@@ -57,8 +57,12 @@ pub(crate) async fn from_first_layout(tx: &mut SqliteConnection, files: &Files) 
     Ok(())
 }
 
+/// Hashes of files → hashes of what they show.
+type PixelHashes = HashMap<String, String>;
+
 /// Fills in what stored pictures show. One whose file is gone or damaged is known by its bytes alone: what it showed cannot be told any more.
-async fn hash_pixels(tx: &mut SqliteConnection, files: &Files) -> Result<(), StoreError> {
+async fn hash_pixels(tx: &mut SqliteConnection, files: &Files) -> Result<PixelHashes, StoreError> {
+    let mut hashes = PixelHashes::new();
     let rows = sqlx::query("SELECT sha256, media_type FROM stimuli").fetch_all(&mut *tx).await?;
     for row in rows {
         let (sha256, media_type): (String, String) = (row.try_get("sha256")?, row.try_get("media_type")?);
@@ -75,13 +79,14 @@ async fn hash_pixels(tx: &mut SqliteConnection, files: &Files) -> Result<(), Sto
         };
         sqlx::query("UPDATE stimuli SET pixels_sha256 = $2, width = $3, height = $4 WHERE sha256 = $1")
             .bind(&sha256)
-            .bind(pixels)
+            .bind(&pixels)
             .bind(width)
             .bind(height)
             .execute(&mut *tx)
             .await?;
+        hashes.insert(sha256, pixels);
     }
-    Ok(())
+    Ok(hashes)
 }
 
 /// The stored files, those loaded first first.
@@ -102,7 +107,11 @@ async fn old_files(tx: &mut SqliteConnection) -> Result<Vec<OldFile>, StoreError
         .collect()
 }
 
-async fn bring_over(tx: &mut SqliteConnection, file: &OldFile) -> Result<(), StoreError> {
+async fn bring_over(
+    tx: &mut SqliteConnection,
+    file: &OldFile,
+    pixels: &PixelHashes,
+) -> Result<(), StoreError> {
     let study = &file.study;
     let file_hash = study.file_hash();
     sqlx::query(
@@ -133,7 +142,7 @@ async fn bring_over(tx: &mut SqliteConnection, file: &OldFile) -> Result<(), Sto
         let version = match known.get(&shown) {
             Some(version) => version.clone(),
             None => {
-                let stimuli = stimuli(tx, study, &shown).await?;
+                let stimuli = stimuli(tx, study, &shown, pixels).await?;
                 let version = put_version(tx, study, &file_hash, &stimuli, &created_at).await?;
                 known.insert(shown, version.clone());
                 version
@@ -147,10 +156,7 @@ async fn bring_over(tx: &mut SqliteConnection, file: &OldFile) -> Result<(), Sto
             .bind(&file_hash)
             .execute(&mut *tx)
             .await?;
-        let mut planned = Vec::new();
-        for trial in trials {
-            planned.push(new_trial(tx, study, trial).await?);
-        }
+        let planned: Vec<PlannedTrial> = trials.into_iter().map(|trial| new_trial(trial, pixels)).collect();
         insert_trials(tx, &session_id, &planned, &created_at, 0).await?;
     }
     // What it showed last, with sessions or without.
@@ -163,7 +169,7 @@ async fn bring_over(tx: &mut SqliteConnection, file: &OldFile) -> Result<(), Sto
         .map(|row| Ok((row.try_get("pair_id")?, row.try_get("condition")?, row.try_get("sha256")?)))
         .collect::<Result<_, StoreError>>()?;
     if shown.len() == study.blocks.iter().map(|block| 2 * block.items.len()).sum::<usize>() {
-        let stimuli = stimuli(tx, study, &shown).await?;
+        let stimuli = stimuli(tx, study, &shown, pixels).await?;
         put_version(tx, study, &file_hash, &stimuli, &file.loaded_at).await?;
     }
     Ok(())
@@ -174,11 +180,12 @@ async fn stimuli(
     tx: &mut SqliteConnection,
     study: &StudyDefinition,
     shown: &BTreeSet<(String, String, String)>,
+    pixels: &PixelHashes,
 ) -> Result<Vec<StudyStimulus>, StoreError> {
     let mut stimuli = Vec::new();
     for (item, condition, sha256) in shown {
         // A missing stimulus used to be planned as an empty hash.
-        let Some(pixels_sha256) = pixels_of(tx, sha256).await? else { continue };
+        let Some(pixels_sha256) = pixels.get(sha256) else { continue };
         let query = "SELECT provenance FROM renders WHERE sha256 = $1 ORDER BY created_at DESC LIMIT 1";
         let provenance: Option<String> =
             sqlx::query_scalar(query).bind(sha256).fetch_optional(&mut *tx).await?;
@@ -186,7 +193,7 @@ async fn stimuli(
             item: item.clone(),
             condition: condition.clone(),
             sha256: sha256.clone(),
-            pixels_sha256,
+            pixels_sha256: pixels_sha256.clone(),
             size: study.size,
             provenance: provenance.map_or(Ok(Value::Object(Default::default())), read_json)?,
         });
@@ -194,29 +201,17 @@ async fn stimuli(
     Ok(stimuli)
 }
 
-async fn pixels_of(tx: &mut SqliteConnection, sha256: &str) -> Result<Option<String>, StoreError> {
-    let query = sqlx::query_scalar("SELECT pixels_sha256 FROM stimuli WHERE sha256 = $1").bind(sha256);
-    Ok(query.fetch_optional(&mut *tx).await?)
-}
-
-async fn new_trial(
-    tx: &mut SqliteConnection,
-    study: &StudyDefinition,
-    old: OldTrial,
-) -> Result<PlannedTrial, StoreError> {
-    let block = study.block(&old.block_id);
-    let target_left = block.is_some_and(|block| block.target == old.left);
-    let (target, other) = if target_left { (&old.left, &old.right) } else { (&old.right, &old.left) };
+fn new_trial(old: OldTrial, pixels: &PixelHashes) -> PlannedTrial {
     let trial = TrialKind::TwoAlternative;
-    let shown = trial.rules().plan(&old.pair_id, target, other, target_left);
-    let mut stimuli = BTreeMap::new();
-    for (role, sha256) in [(Role::Left, &old.left_sha256), (Role::Right, &old.right_sha256)] {
-        let pixels_sha256 = pixels_of(tx, sha256).await?.unwrap_or_default();
-        let hashes = StimulusHashes { sha256: sha256.clone(), pixels_sha256 };
-        stimuli.insert(role, hashes);
-    }
+    let hashes = |sha256: String| {
+        let pixels_sha256 = pixels.get(&sha256).cloned().unwrap_or_default();
+        StimulusHashes { sha256, pixels_sha256 }
+    };
+    let stimuli = [(Role::Left, hashes(old.left_sha256)), (Role::Right, hashes(old.right_sha256))].into();
     let trial = Trial {
         trial_index: old.trial_index,
+        // Whichever is the target: the left one comes first.
+        shown: trial.rules().plan(&old.pair_id, &old.left, &old.right, true),
         trial,
         block_id: old.block_id,
         block_index: old.block_index,
@@ -224,7 +219,6 @@ async fn new_trial(
         item_index: old.pair_index,
         repeat: 0,
         kind: old.kind,
-        shown,
     };
-    Ok(PlannedTrial { trial, stimuli })
+    PlannedTrial { trial, stimuli }
 }

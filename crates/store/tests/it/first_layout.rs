@@ -156,6 +156,8 @@ async fn analyses_read_both_chains_as_one() {
     let rows = store.answer_rows("small", std::slice::from_ref(&session.version)).await.unwrap();
     let chains: Vec<(u32, i64)> = rows.iter().map(|row| (row.chain, row.seq)).collect();
     assert_eq!(chains, (1..=34).map(|seq| (1, seq)).chain([(2, 1)]).collect::<Vec<_>>());
+    let times = store.answer_times("small", std::slice::from_ref(&session.version)).await.unwrap();
+    assert_eq!(times, Some((rows[0].received_at.clone(), rows[34].received_at.clone())));
     // A text that is none hides its own row alone.
     tamper(folder.path(), &["UPDATE responses SET pair_id = CAST(x'ff' AS TEXT) WHERE response_id = 2"])
         .await;

@@ -69,7 +69,7 @@ const REFUSED: [(&str, &[&str]); 8] = [
             "INSERT OR REPLACE INTO version_stimuli SELECT study_id, version, item_id, condition, sha256, 'x', provenance FROM version_stimuli
              WHERE study_id = 'shadow-puppets'",
             "INSERT INTO version_stimuli SELECT study_id, version, 'another', condition, sha256, 'x', provenance FROM version_stimuli
-             WHERE study_id = 'small'",
+             WHERE study_id = 'small' LIMIT 1",
         ],
     ),
     (
@@ -91,7 +91,7 @@ const REFUSED: [(&str, &[&str]); 8] = [
             "INSERT OR REPLACE INTO sessions SELECT * FROM sessions",
             "REPLACE INTO sessions (rowid, session_id, study_id, file_hash, subject_id, token_hash, slot, plan_seed, params, display,
              created_at, last_seen_at, version) SELECT rowid, 'new', study_id, file_hash, subject_id, token_hash, slot, plan_seed, params,
-             display, created_at, last_seen_at, version FROM sessions",
+             display, created_at, last_seen_at, version FROM sessions LIMIT 1",
         ],
     ),
 ];

@@ -18,7 +18,8 @@ use kelir_store::{
 use kelir_study::analysis::{conditions_scale, summarise};
 use kelir_study::answers::Participant;
 use kelir_study::screening::screen;
-use kelir_study::{StudyDefinition, TrialPlan};
+use kelir_study::trials::Role;
+use kelir_study::{StudyDefinition, Trial, TrialPlan};
 use serde::Serialize;
 
 use crate::output::{print, table};
@@ -36,7 +37,8 @@ pub struct Args {
 }
 
 const CONDITIONS: usize = 6;
-const PAIRS_A_BLOCK: usize = 2;
+const ITEMS_A_BLOCK: usize = 2;
+const SIZE: [u32; 2] = [592, 333];
 /// Sessions stored in one transaction.
 const BATCH: u32 = 500;
 const PASSWORD: &str = "a password for a benchmark";
@@ -65,7 +67,7 @@ struct Report {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let trials = (CONDITIONS * (CONDITIONS - 1) / 2 * PAIRS_A_BLOCK) as u64;
+    let trials = (CONDITIONS * (CONDITIONS - 1) / 2 * ITEMS_A_BLOCK) as u64;
     if !(1..=100_000_000).contains(&args.rows) {
         return Err(bad_input(format!("rows = {}: must lie between 1 and 100,000,000", args.rows)));
     }
@@ -103,19 +105,20 @@ async fn measure(data: &Path, people: u32) -> Result<Report> {
     std::fs::write(data.join("studies/rows.toml"), study_file())?;
     let study = Library::new(data).study("studies/rows.toml")?;
     let store = Store::open(data).await?;
-    let shown = Shown::store(&store, &study).await?;
+    let served = Served::new(&store, study).await?;
     let begun = Instant::now();
-    fill(&store, &study, &shown, people).await?;
+    served.fill(&store, people).await?;
     let write_s = begun.elapsed().as_secs_f64();
 
-    let mut stored = StoredAnswers::new(&study, std::slice::from_ref(&shown.version));
-    let cold = judged(&store, &study, &mut stored).await?;
+    let study = &served.study;
+    let mut stored = StoredAnswers::new(study, std::slice::from_ref(&served.version));
+    let cold = judged(&store, study, &mut stored).await?;
     let rows = u64::from(people) * study.most_trials() as u64;
     if cold.answers as u64 != rows {
         bail!("{} answers were read of {rows}", cold.answers);
     }
-    one_more(&store, &study, &shown).await?;
-    let warm = judged(&store, &study, &mut stored).await?;
+    served.one_more(&store).await?;
+    let warm = judged(&store, study, &mut stored).await?;
     store.close().await;
 
     let begun = Instant::now();
@@ -124,7 +127,7 @@ async fn measure(data: &Path, people: u32) -> Result<Report> {
     results::results(&store, &selection).await?;
     store.close().await;
     let command_s = begun.elapsed().as_secs_f64();
-    let (http_first_s, http_next_s) = over_http(data, &study, &shown).await?;
+    let (http_first_s, http_next_s) = over_http(data, &served).await?;
     Ok(Report {
         rows,
         participants: u64::from(people),
@@ -181,23 +184,25 @@ async fn judged(store: &Store, study: &StudyDefinition, stored: &mut StoredAnswe
     Ok(Judged { answers: answers.len(), excluded, read_s, screening_s, t_tests_s, scaling_s, total_s })
 }
 
-/// Six conditions, each pair of them a block of two pairs of pictures.
+/// Six conditions, each two of them a block of two items.
 fn study_file() -> String {
-    let mut text = "title = \"Rows\"\nquestion = \"Which?\"\nseed = 1\nsize = [592, 333]\nestimated_minutes = 9\n\
-         texts = { welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }\n\
-         screening = { min_rt_ms = 200, max_fast_trials = 2, straight_lining = true, incomplete = true }\n"
-        .to_owned();
+    let [width, height] = SIZE;
+    let mut text = format!(
+        "title = \"Rows\"\nquestion = \"Which?\"\nseed = 1\nsize = [{width}, {height}]\nestimated_minutes = 9\n\
+         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
+         screening = {{ min_rt_ms = 200, max_fast_trials = 2, straight_lining = true, incomplete = true }}\n"
+    );
     for i in 0..CONDITIONS {
         text += &format!("[conditions.spp-{i}]\ntechnique = \"mc\"\nspp = {}\n", 1 << i);
     }
     for (i, j) in comparisons() {
-        let pairs: Vec<String> = (0..PAIRS_A_BLOCK)
-            .map(|k| format!("{{ id = \"pair-{i}-{j}-{k}\", scene = \"../scenes/arjuna-near.toml\" }}"))
+        let items: Vec<String> = (0..ITEMS_A_BLOCK)
+            .map(|k| format!("{{ id = \"item-{i}-{j}-{k}\", scene = \"../scenes/arjuna-near.toml\" }}"))
             .collect();
         text += &format!(
             "[[blocks]]\nid = \"block-{i}-{j}\"\ntitle = \"{i} and {j}\"\nkind = \"still\"\n\
-             conditions = [\"spp-{i}\", \"spp-{j}\"]\ntarget = \"spp-{i}\"\npairs = [{}]\n",
-            pairs.join(", ")
+             conditions = [\"spp-{i}\", \"spp-{j}\"]\ntarget = \"spp-{i}\"\nitems = [{}]\n",
+            items.join(", ")
         );
     }
     text
@@ -207,87 +212,94 @@ fn comparisons() -> impl Iterator<Item = (usize, usize)> {
     (0..CONDITIONS).flat_map(|i| (i + 1..CONDITIONS).map(move |j| (i, j)))
 }
 
-/// One picture for all items and conditions, and the version that it makes.
-struct Shown {
+/// The study as it is served: one picture stands for all.
+struct Served {
+    study: StudyDefinition,
     version: String,
-    file_hash: String,
-    hashes: StimulusHashes,
+    picture: StimulusHashes,
 }
 
-impl Shown {
-    async fn store(store: &Store, study: &StudyDefinition) -> Result<Shown> {
-        let size = study.size.map(|pixels| pixels as usize);
-        let picture = encode::png(&vec![0xff80_8080; size[0] * size[1]], size)?;
-        let info = store.put_stimulus("image/png", picture).await?;
-        let mut stimuli = Vec::new();
-        for block in &study.blocks {
-            for (item, condition) in
-                block.items.iter().flat_map(|i| block.conditions.iter().map(move |c| (i, c)))
-            {
-                stimuli.push(StudyStimulus {
-                    item: item.id.clone(),
-                    condition: condition.clone(),
-                    sha256: info.sha256.clone(),
-                    pixels_sha256: info.pixels_sha256.clone(),
-                    size: info.size,
-                    provenance: serde_json::json!({}),
-                });
-            }
+impl Served {
+    async fn new(store: &Store, study: StudyDefinition) -> Result<Served> {
+        let black = vec![0; SIZE[0] as usize * SIZE[1] as usize];
+        let png = encode::png(&black, SIZE.map(|side| side as usize))?;
+        let info = store.put_stimulus("image/png", png).await?;
+        let shown = study.blocks.iter().flat_map(|block| {
+            block
+                .items
+                .iter()
+                .flat_map(|item| block.conditions.iter().map(|name| (item.id.clone(), name.clone())))
+        });
+        let stimulus = |(item, condition)| StudyStimulus {
+            item,
+            condition,
+            sha256: info.sha256.clone(),
+            pixels_sha256: info.pixels_sha256.clone(),
+            size: info.size,
+            provenance: serde_json::json!({}),
+        };
+        let stimuli: Vec<StudyStimulus> = shown.map(stimulus).collect();
+        let version = store.put_version(&study, &stimuli).await?;
+        let picture = StimulusHashes { sha256: info.sha256, pixels_sha256: info.pixels_sha256 };
+        Ok(Served { study, version, picture })
+    }
+
+    /// Simulated participants, a fifth of a JOD between neighbouring conditions, through the store's own rows and chain.
+    async fn fill(&self, store: &Store, people: u32) -> Result<()> {
+        let bar = progress::bar(u64::from(people), "participants");
+        let mut next = 0;
+        while next < people {
+            let until = people.min(next + BATCH);
+            let sessions = (next..until).map(|slot| self.simulate(slot)).collect::<Result<_>>()?;
+            store.import_sessions(sessions).await?;
+            next = until;
+            bar.set_position(u64::from(next));
         }
-        let version = store.put_version(study, &stimuli).await?;
-        let hashes = StimulusHashes { sha256: info.sha256, pixels_sha256: info.pixels_sha256 };
-        Ok(Shown { version, file_hash: study.file_hash(), hashes })
+        bar.finish_and_clear();
+        Ok(())
+    }
+
+    fn simulate(&self, slot: u32) -> Result<ImportedSession> {
+        let mut random = Random::stream(self.study.seed, u64::from(slot));
+        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&self.study, slot);
+        let answers = trials.iter().map(|trial| answer(trial, &mut random)).collect::<Result<_>>()?;
+        let filled = |trial: Trial| PlannedTrial {
+            stimuli: trial.shown.keys().map(|role| (*role, self.picture.clone())).collect(),
+            trial,
+        };
+        let next = NextTrials { trials: trials.into_iter().map(filled).collect(), more };
+        Ok(ImportedSession {
+            study_id: self.study.id.clone(),
+            version: self.version.clone(),
+            file_hash: self.study.file_hash(),
+            slot,
+            planned: PlannedSession { seed, next },
+            answers,
+            completion_code: Some("DONE".to_owned()),
+        })
+    }
+
+    /// A newcomer who has answered one trial.
+    async fn one_more(&self, store: &Store) -> Result<()> {
+        let mut session = self.simulate(1_000_000_000)?;
+        session.answers.truncate(1);
+        session.completion_code = None;
+        Ok(store.import_sessions(vec![session]).await?)
     }
 }
 
-/// Simulated participants, a fifth of a JOD between neighbouring conditions, through the store's own rows and chain.
-async fn fill(store: &Store, study: &StudyDefinition, shown: &Shown, people: u32) -> Result<()> {
-    let bar = progress::bar(u64::from(people), "participants");
-    let mut next = 0;
-    while next < people {
-        let until = people.min(next + BATCH);
-        let sessions = (next..until).map(|slot| simulate(study, slot, shown));
-        store.import_sessions(sessions.collect::<Result<_>>()?).await?;
-        next = until;
-        bar.set_position(u64::from(next));
-    }
-    bar.finish_and_clear();
-    Ok(())
-}
-
-fn simulate(study: &StudyDefinition, slot: u32, shown: &Shown) -> Result<ImportedSession> {
-    let mut random = Random::stream(study.seed, u64::from(slot));
-    let plan = TrialPlan::for_slot(study, slot);
-    let quality = |name: &str| name.trim_start_matches("spp-").parse::<f64>().unwrap_or_default() * 0.2;
-    let (mut answers, mut trials) = (Vec::new(), Vec::new());
-    for trial in plan.trials {
-        let rules = trial.trial.rules();
-        let conditions: Vec<f64> = trial.shown.values().map(|placed| quality(&placed.condition)).collect();
-        let p = Model::default().probability(conditions[0] - conditions[1]);
-        let sent = rules.simulate(random.bernoulli(p), (7.0 + 0.6 * random.normal()).exp());
-        let checked = rules.check(&sent).map_err(|errors| anyhow::anyhow!("{errors:?}"))?;
-        let (trial_index, payload) = (trial.trial_index, sent.to_string());
-        answers.push(NewAnswer { trial_index, answer: checked.answer, payload });
-        let stimuli = trial.shown.keys().map(|role| (*role, shown.hashes.clone())).collect();
-        trials.push(PlannedTrial { trial, stimuli });
-    }
-    Ok(ImportedSession {
-        study_id: study.id.clone(),
-        version: shown.version.clone(),
-        file_hash: shown.file_hash.clone(),
-        slot,
-        planned: PlannedSession { seed: plan.seed, next: NextTrials { trials, more: plan.more } },
-        answers,
-        completion_code: Some("DONE".to_owned()),
-    })
-}
-
-/// A newcomer who has answered one trial.
-async fn one_more(store: &Store, study: &StudyDefinition, shown: &Shown) -> Result<()> {
-    let mut session = simulate(study, 1_000_000_000, shown)?;
-    session.answers.truncate(1);
-    session.completion_code = None;
-    Ok(store.import_sessions(vec![session]).await?)
+/// What a page sends for a trial, and what is stored of it.
+fn answer(trial: &Trial, random: &mut Random) -> Result<NewAnswer> {
+    let quality = |role| {
+        let spp = trial.shown.get(&role).and_then(|placed| placed.condition.strip_prefix("spp-"));
+        spp.and_then(|spp| spp.parse::<f64>().ok()).unwrap_or_default() * 0.2
+    };
+    let p = Model::default().probability(quality(Role::Left) - quality(Role::Right));
+    let rt_ms = (7.0 + 0.6 * random.normal()).exp();
+    let rules = trial.trial.rules();
+    let sent = rules.simulate(random.bernoulli(p), rt_ms);
+    let Ok(checked) = rules.check(&sent) else { bail!("trial {}: {sent} is no answer", trial.trial_index) };
+    Ok(NewAnswer { trial_index: trial.trial_index, answer: checked.answer, payload: sent.to_string() })
 }
 
 /// Refuses to draw: no picture is looked at here.
@@ -304,7 +316,7 @@ impl Maker for Nobody {
 }
 
 /// Seconds of the first request for results after the server's start, and of the next, before which one answer came.
-async fn over_http(data: &Path, study: &StudyDefinition, shown: &Shown) -> Result<(f64, f64)> {
+async fn over_http(data: &Path, served: &Served) -> Result<(f64, f64)> {
     let server = Server::start(ServerConfig {
         data: data.to_owned(),
         listen: SocketAddr::from(([127, 0, 0, 1], 0)),
@@ -324,7 +336,7 @@ async fn over_http(data: &Path, study: &StudyDefinition, shown: &Shown) -> Resul
         .find_map(|line| line.strip_prefix("set-cookie: ")?.split(';').next())
         .context("the server gave no cookie")?
         .to_owned();
-    let path = format!("/api/v1/studies/{}/versions/current/results", study.id);
+    let path = format!("/api/v1/studies/{}/versions/{}/results", served.study.id, served.version);
     let mut seconds = [0.0; 2];
     for took in &mut seconds {
         let begun = Instant::now();
@@ -333,7 +345,7 @@ async fn over_http(data: &Path, study: &StudyDefinition, shown: &Shown) -> Resul
         if !answer.starts_with("HTTP/1.1 200") || !answer.contains("\"jod\"") {
             bail!("GET {path}: {}", answer.lines().next().unwrap_or_default());
         }
-        one_more(server.server().store(), study, shown).await?;
+        served.one_more(server.server().store()).await?;
     }
     server.shutdown().await;
     Ok((seconds[0], seconds[1]))
