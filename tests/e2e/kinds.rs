@@ -135,7 +135,7 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
     };
     let blocks = [
         block("brief", &intervals(&["a", "b"], BRIEF)),
-        block("slow", &intervals(&["c"], [1500.0; 4])),
+        block("slow", &intervals(&["c"], [1000.0; 4])),
         block("sides", &items(&["d", "e"])),
     ];
     std::fs::write(data.path().join("studies/kinds.toml"), study("[320, 180]", &blocks.concat())).unwrap();
@@ -143,7 +143,7 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
     let visits = json!([
         { "name": "ana", "study": "kinds", "viewport": { "width": 1280, "height": 800 }, "input": "keyboard", "shoot": 2,
           "choices": ["first", "second", "first", "left", "left"] },
-        { "name": "budi", "study": "kinds", "viewport": { "width": 390, "height": 844 }, "dpr": 3, "input": "touch", "shoot": 2,
+        { "name": "budi", "study": "kinds", "viewport": { "width": 390, "height": 844 }, "input": "touch", "shoot": 2,
           "choices": ["first", "first", "second", "left", "right"] },
     ]);
     let task = json!({ "base": server.base, "shots": root().join("tests/screenshots"), "visits": visits });
@@ -193,7 +193,7 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
             }
             let asked = match index {
                 0 | 1 => BRIEF,
-                2 => [1500.0; 4],
+                2 => [1000.0; 4],
                 _ => {
                     for step in STEPS {
                         assert_eq!(cell(&format!("requested_ms_{step}")), "", "a trial of another kind");
