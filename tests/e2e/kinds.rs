@@ -166,8 +166,8 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
             assert_eq!(
                 trial["shown"],
                 json!({ roles[0]: hash(roles[0]), roles[1]: hash(roles[1]) }),
-                "{row:?}",
-                row = row.shown
+                "trial {index} of {}",
+                row.who
             );
             assert_ne!(hash(roles[0]), hash(roles[1]), "two pictures that are told apart");
             assert_eq!((&row.answer["choice"], &row.payload["choice"]), (&trial["choice"], &trial["choice"]));
@@ -296,7 +296,11 @@ fn what_the_export_says_of_a_stimulus_is_how_wide_it_stood_on_any_display() {
                     "{} of {device} device pixels, {seen} seen",
                     row["trial_kind"]
                 );
-                assert!((number("css_width_px") - seen).abs() < 0.01, "{row:?}");
+                assert!(
+                    (number("css_width_px") - seen).abs() < 0.01,
+                    "{} CSS px are said, {seen} seen",
+                    row["css_width_px"]
+                );
                 // Without the ratio it would not be: not where the ratio is another than 1.
                 assert_eq!((device - seen).abs() < 0.01, dpr == 1.0);
             }
