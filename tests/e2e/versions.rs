@@ -151,6 +151,7 @@ fn a_comma_in_the_thanks_hides_nothing_and_a_session_keeps_the_texts_it_began_wi
     take(&server, "small", "b", &ALL);
     let half = Taking::resume(&server, &id, &token);
     assert_eq!(half.state["next_trial"], 1);
+    assert_eq!(half.state["study"]["texts"]["thanks"], json!(["Thank you."]), "the texts it began with");
     (1..4).for_each(|trial| assert_eq!(half.answer(trial, "left", 500.0).0, 200));
     half.finish();
     let known = versions(data.path());
@@ -170,6 +171,15 @@ fn a_comma_in_the_thanks_hides_nothing_and_a_session_keeps_the_texts_it_began_wi
     let server = Server::start_small(data.path());
     take(&server, "small", "c", &ALL);
     assert_eq!(versions(data.path()).len(), 2);
+    // Who is in the midst of it is asked the question that they began with.
+    let asked = Taking::begin(&server, "small", "d");
+    let (id, token) = (asked.id.clone(), asked.token.clone());
+    server.terminate();
+    edit(data.path(), "studies/small.toml", "Which image is more likely to be real?", "Which is the fake?");
+    let server = Server::start_small(data.path());
+    let asked = Taking::resume(&server, &id, &token);
+    assert_eq!(asked.state["study"]["question"], "Which image is more likely to be real?");
+    assert_eq!(Taking::begin(&server, "small", "e").state["study"]["question"], "Which is the fake?");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 3ceafc6f8a8eccc071a655bbf9f49a938eee42d634016d229a1d0ebebbd118da 1cb4e2ef38fc9ef2186f33c9210d2f28031b20b7ada14af39e795d656a174436
+// Generated from openapi.json by `npm run types`; do not edit. 99aa99cb2ddb44b81e9dba7f7eac77bb0f617a2feb9c7d2ca32d2f2250c70bb3 f6eadde0417624be7f2b764096c87469b48abe887387a31a3b1b3d3db2821bca
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -1843,6 +1843,8 @@ export interface components {
             session_id: string;
             /** @description How far it is. */
             status: components["schemas"]["SessionStatus"];
+            /** @description The study as it was when the session began: its texts and its question stay the session's own. */
+            study: components["schemas"]["Study"];
             /** @description The study's id. */
             study_id: string;
             /** @description The trials that are decided so far, by index from 0. The list only grows. */

@@ -50,7 +50,7 @@ export class VersionList {
       "form",
       {},
       h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of versions" }, table),
-      h("p", { class: "quiet" }, "A version is a study's file with its stimuli. Answers of different versions are pooled only where you ask for it."),
+      h("p", { class: "quiet" }, "A version is what a study asks and the pictures that it shows. Answers to different versions are pooled only where you ask for it."),
       h("p", {}, h("button", { class: "primary" }, "Show these answers")),
     );
     // A version is not pooled with itself.

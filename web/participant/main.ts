@@ -40,6 +40,12 @@ async function start(): Promise<void> {
   tabs.claim();
   session = new Session(study.id, key, params, openStore(() => localStorage));
   await session.resume();
+  if (session.state !== null) {
+    // A session keeps the texts and the question that it began with.
+    study = session.state.study;
+    document.title = study.title;
+    dress(study.surround);
+  }
   if (session.state?.status !== "completed") session.rescue();
   await new Visit(study, session).run();
 }

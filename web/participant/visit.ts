@@ -21,7 +21,7 @@ type Node = Record<string, unknown> & { on_finish: () => Promise<void> };
 const PATIENCE_MS = 400;
 
 export class Visit {
-  readonly #study: Study;
+  readonly #found: Study;
   readonly #session: Session;
   readonly #jsPsych = initJsPsych({ display_element: display });
   readonly #loader = openLoader((waiting) =>
@@ -31,8 +31,13 @@ export class Visit {
   #instructed = false;
 
   constructor(study: Study, session: Session) {
-    this.#study = study;
+    this.#found = study;
     this.#session = session;
+  }
+
+  /** The study as it was when the session began; before that, as it is now. */
+  get #study(): Study {
+    return this.#session.state?.study ?? this.#found;
   }
 
   async run(): Promise<void> {

@@ -59,6 +59,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
   const log: Array<{ method: string; path: string; query: string; text: string }> = [];
   let researcher = false;
 
+  const found = (): Study => ({ ...study, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
     return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));
@@ -68,6 +69,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
   const state = (s: Session): State => ({
     session_id: s.id,
     study_id: study.id,
+    study: found(),
     status: s.code ? "completed" : s.consented ? "in_progress" : "consent",
     consented: s.consented,
     trials: s.consented ? decided(s) : [],
@@ -119,8 +121,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
   const api = (method: string, path: string, query: URLSearchParams, text: string, token: string | undefined): Reply => {
     const body: unknown = text === "" ? undefined : JSON.parse(text);
     if (method === "GET" && path === `/api/v1/studies/${study.id}`) {
-      const found: Study = { ...study, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] };
-      return [200, found];
+      return [200, found()];
     }
     if (method === "POST" && path === `/api/v1/studies/${study.id}/sessions`) {
       const s: Session = { id: randomUUID(), token: randomUUID(), consented: false, answers: new Map(), code: null, body: body as Session["body"] };
@@ -135,8 +136,8 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
       return ofSession(method, s, rest, query, text) ?? problem(404, "not_found", "There is nothing here.");
     }
     if (path === "/api/v1/auth/session") return signIn(method, body) ?? problem(405, "method_not_allowed", "Not like this.");
-    const found = results?.(path, query) ?? problem(404, "not_found", "There is nothing here.");
-    return found[0] < 400 && !researcher ? problem(401, "unauthorized", "Sign in first.") : found;
+    const reply = results?.(path, query) ?? problem(404, "not_found", "There is nothing here.");
+    return reply[0] < 400 && !researcher ? problem(401, "unauthorized", "Sign in first.") : reply;
   };
 
   const server = createServer(async (req, res) => {

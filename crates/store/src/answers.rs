@@ -4,7 +4,7 @@ use crate::clock;
 use crate::error::StoreError;
 use crate::files::sha256_hex;
 use crate::first_chain::{self, GENESIS};
-use crate::plans::{PlannedTrial, decided, insert_trials};
+use crate::plans::{PlannedTrial, decided, insert_trials, trial};
 use crate::sessions::Session;
 use crate::sqlite::Store;
 use kelir_study::trials::Role;
@@ -124,13 +124,15 @@ impl Store {
         if let Some(stored) = stored(&mut tx, &session.session_id, new).await? {
             return Ok(stored);
         }
-        let trials = decided(&mut tx, &session.session_id).await?;
-        let Some(planned) = trials.get(new.trial_index as usize) else { return Ok(Appended::NoSuchTrial) };
+        let Some(planned) = trial(&mut tx, &session.session_id, new.trial_index).await? else {
+            return Ok(Appended::NoSuchTrial);
+        };
         let mut chain = Head::read(&mut tx, &session.study_id).await?;
         let now = clock::now();
-        chain.append(&mut tx, session, planned, new, &now).await?;
+        chain.append(&mut tx, session, &planned, new, &now).await?;
         let mut more = more(&mut tx, &session.session_id).await?;
         if more {
+            let trials = decided(&mut tx, &session.session_id, 0).await?;
             let answers = answers_of(&mut tx, &session.session_id).await?;
             let next = next(Progress { answers, trials })?;
             insert_trials(&mut tx, &session.session_id, &next.trials, &now, chain.seq).await?;

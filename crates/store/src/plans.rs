@@ -6,7 +6,7 @@ use crate::sqlite::Store;
 use kelir_study::trials::Role;
 use serde::{Deserialize, Serialize};
 use sqlx::Row;
-use sqlx::sqlite::SqliteConnection;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::collections::BTreeMap;
 
 /// The beginning of a slot's plan with the stimuli filled in.
@@ -67,21 +67,63 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn trials(&self, session_id: &str) -> Result<Vec<PlannedTrial>, StoreError> {
-        decided(&mut *self.reader.acquire().await?, session_id).await
+        self.trials_from(session_id, 0).await
     }
+
+    /// Those from this index on.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn trials_from(&self, session_id: &str, from: u32) -> Result<Vec<PlannedTrial>, StoreError> {
+        decided(&mut *self.reader.acquire().await?, session_id, from).await
+    }
+
+    /// One trial of a session; `None` where none of this index is decided.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn trial(
+        &self,
+        session_id: &str,
+        trial_index: u32,
+    ) -> Result<Option<PlannedTrial>, StoreError> {
+        trial(&mut *self.reader.acquire().await?, session_id, trial_index).await
+    }
+
+    /// The first trial of a session that is decided and has no answer; `None` where there is none.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn next_trial(&self, session_id: &str) -> Result<Option<u32>, StoreError> {
+        let query = "SELECT min(trial_index) FROM session_trials t WHERE session_id = $1
+             AND NOT EXISTS (SELECT 1 FROM answers a WHERE a.session_id = $1 AND a.trial_index = t.trial_index)
+             AND NOT EXISTS (SELECT 1 FROM responses r WHERE r.session_id = $1 AND r.trial_index = t.trial_index)";
+        Ok(sqlx::query_scalar(query).bind(session_id).fetch_one(&self.reader).await?)
+    }
+}
+
+pub(crate) async fn trial(
+    connection: &mut SqliteConnection,
+    session_id: &str,
+    trial_index: u32,
+) -> Result<Option<PlannedTrial>, StoreError> {
+    let query = sqlx::query("SELECT trial FROM session_trials WHERE session_id = $1 AND trial_index = $2");
+    query.bind(session_id).bind(trial_index).fetch_optional(connection).await?.as_ref().map(read).transpose()
+}
+
+fn read(row: &SqliteRow) -> Result<PlannedTrial, StoreError> {
+    serde_json::from_str(row.try_get("trial")?).map_err(|e| StoreError::corrupt("trial", e))
 }
 
 pub(crate) async fn decided(
     connection: &mut SqliteConnection,
     session_id: &str,
+    from: u32,
 ) -> Result<Vec<PlannedTrial>, StoreError> {
-    let rows = sqlx::query("SELECT trial FROM session_trials WHERE session_id = $1 ORDER BY trial_index")
-        .bind(session_id)
-        .fetch_all(connection)
-        .await?;
-    rows.iter()
-        .map(|row| serde_json::from_str(row.try_get("trial")?).map_err(|e| StoreError::corrupt("trial", e)))
-        .collect()
+    let query =
+        "SELECT trial FROM session_trials WHERE session_id = $1 AND trial_index >= $2 ORDER BY trial_index";
+    let rows = sqlx::query(query).bind(session_id).bind(from).fetch_all(connection).await?;
+    rows.iter().map(read).collect()
 }
 
 /// Appends trials, decided now from the study's answers up to `after_seq`.

@@ -23,6 +23,6 @@ pub use definition::{
     Block, Completion, Condition, Direction, GUESS, Item, Kind, Psychometric, Screening, StudyDefinition,
     Texts,
 };
-pub use plan::{Decision, Trial, TrialPlan, next_trials};
+pub use plan::{Decision, Procedures, Trial, TrialPlan, next_trials};
 pub use problems::{Problem, StudyErrors};
 pub use trials::TrialKind;

@@ -4,12 +4,15 @@
 //! are mirror images: where one has the target on the left the other has it on the right, so that every pair is balanced
 //! exactly whenever both are completed. A newcomer takes the lowest slot that no completed or active session holds.
 
+use crate::adaptive::Running;
 use crate::definition::{Block, Kind, StudyDefinition, hex};
 use crate::trials::{Shown, TrialKind, owned};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// What one participant is shown first; more may be decided from the answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -84,27 +87,69 @@ pub fn next_trials(
     decided: &[Trial],
     chose_target: &dyn Fn(u32) -> Option<bool>,
 ) -> Decision {
-    let fixed = fixed_blocks(study, slot);
-    let mut next = Next { study, slot, decided, trials: Vec::new() };
-    for (b, (block, fixed)) in study.blocks.iter().zip(fixed).enumerate() {
-        let before: Vec<&Trial> = decided.iter().filter(|trial| trial.block_index as usize == b).collect();
-        match &block.adaptive {
-            None => fixed.into_iter().skip(before.len()).for_each(|(item, first)| next.push(b, item, first)),
-            Some(adaptive) => {
-                let answers: Vec<bool> =
-                    before.iter().map_while(|trial| chose_target(trial.trial_index)).collect();
-                if answers.len() < before.len() {
-                    return Decision { trials: next.trials, more: true };
+    Procedures::default().next_trials(study, slot, decided, chose_target)
+}
+
+/// Procedures of one session's adaptive blocks, by block, with the answers that they have taken in: whoever decides trial after trial (a
+/// simulation) need not replay them all each time.
+#[derive(Clone, Debug, Default)]
+pub struct Procedures(BTreeMap<usize, Running>);
+
+impl Procedures {
+    /// Those of a study's adaptive blocks before the first answer.
+    pub fn of(study: &StudyDefinition) -> Procedures {
+        let adaptive = study
+            .blocks
+            .iter()
+            .enumerate()
+            .filter_map(|(b, block)| Some((b, block, block.adaptive.as_ref()?)));
+        Procedures(
+            adaptive.filter_map(|(b, block, adaptive)| Some((b, adaptive.start(block).ok()?))).collect(),
+        )
+    }
+
+    /// As [`next_trials`]; of the answers only those that have come since are looked at.
+    pub fn next_trials(
+        &mut self,
+        study: &StudyDefinition,
+        slot: u32,
+        decided: &[Trial],
+        chose_target: &dyn Fn(u32) -> Option<bool>,
+    ) -> Decision {
+        let fixed = fixed_blocks(study, slot);
+        let mut next = Next { study, slot, decided, trials: Vec::new() };
+        for (b, (block, fixed)) in study.blocks.iter().zip(fixed).enumerate() {
+            let before: Vec<&Trial> =
+                decided.iter().filter(|trial| trial.block_index as usize == b).collect();
+            match &block.adaptive {
+                None => {
+                    fixed.into_iter().skip(before.len()).for_each(|(item, first)| next.push(b, item, first))
                 }
-                // The settings were checked with the study file: an error would have been its.
-                if let Ok(Some(level)) = adaptive.next_level(block, answers) {
-                    next.push_level(b, level, &before);
-                    return Decision { trials: next.trials, more: true };
+                Some(adaptive) => {
+                    // The settings were checked with the study file: an error would have been its.
+                    let running = match self.0.entry(b) {
+                        Entry::Occupied(running) => running.into_mut(),
+                        Entry::Vacant(place) => match adaptive.start(block) {
+                            Ok(running) => place.insert(running),
+                            Err(_) => continue,
+                        },
+                    };
+                    let unseen = before.get(running.answered()..).unwrap_or_default();
+                    for chose in unseen.iter().map_while(|trial| chose_target(trial.trial_index)) {
+                        running.answer(chose);
+                    }
+                    if running.answered() < before.len() {
+                        return Decision { trials: next.trials, more: true };
+                    }
+                    if let Some(level) = running.level() {
+                        next.push_level(b, level, &before);
+                        return Decision { trials: next.trials, more: true };
+                    }
                 }
             }
         }
+        Decision { trials: next.trials, more: false }
     }
-    Decision { trials: next.trials, more: false }
 }
 
 /// The trials being decided.

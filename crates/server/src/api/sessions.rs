@@ -1,5 +1,6 @@
 //! Taking part: sessions, their trials, what is said back.
 
+use super::Study;
 use kelir_study::Kind;
 use kelir_study::schema::worded;
 use kelir_study::trials::{Intervals, Role, TrialName};
@@ -89,6 +90,8 @@ pub struct SessionState {
     pub session_id: String,
     /// The study's id.
     pub study_id: String,
+    /// The study as it was when the session began: its texts and its question stay the session's own.
+    pub study: Study,
     /// How far it is.
     pub status: SessionStatus,
     /// Whether consent has been given.

@@ -1,6 +1,6 @@
 //! Taking part: a session from its beginning to its code. Conditions never leave the server.
 
-use super::studies::StudyPath;
+use super::studies::{StudyPath, told};
 use super::{Answered, Fresh};
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
@@ -149,14 +149,14 @@ pub(crate) async fn put_answer(
     let no_trial = || Problem::not_found("trial");
     // Plain digits alone: "+1" and "01" are other addresses, not other names of a trial.
     let index = trial_index.parse().ok().filter(|i: &u32| i.to_string() == trial_index);
-    let trials = app.store.trials(&session.session_id).await?;
-    let planned_trial = index.and_then(|i| trials.get(i as usize)).ok_or_else(no_trial)?;
+    let trial =
+        app.store.trial(&session.session_id, index.ok_or_else(no_trial)?).await?.ok_or_else(no_trial)?.trial;
     if session.consented_at.is_none() {
         return Err(Problem::new(ProblemCode::NoConsent, "An answer can be stored only after consent."));
     }
-    let checked = planned_trial.trial.trial.rules().check(&body.value);
+    let checked = trial.trial.rules().check(&body.value);
     let answer = checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))?.answer;
-    let new = NewAnswer { trial_index: planned_trial.trial.trial_index, answer, payload: body.text };
+    let new = NewAnswer { trial_index: trial.trial_index, answer, payload: body.text };
     let begun = app.begun(&session).await?;
     let next = |progress: Progress| next_of(&begun, session.slot, &progress);
     match app.store.append_answer(&session, &new, next).await? {
@@ -169,10 +169,17 @@ pub(crate) async fn put_answer(
         }
         Appended::NoSuchTrial => return Err(no_trial()),
     }
-    let session = app.store.session(&session.session_id).await?;
-    let session = session.ok_or_else(|| Problem::internal("a session is gone"))?;
-    let SessionState { next_trial, more, trials, .. } = state_of(&app, &session).await?;
-    let trials = known.known.map(|known| trials.into_iter().skip(known).collect()).unwrap_or_default();
+    // A plan that is whole stays so.
+    let more =
+        session.more && app.store.session(&session.session_id).await?.is_some_and(|session| session.more);
+    let mut trials = Vec::new();
+    if let Some(known) = known.known {
+        let answered = app.store.answered(&session.session_id).await?;
+        let from = u32::try_from(known).unwrap_or(u32::MAX);
+        let decided = app.store.trials_from(&session.session_id, from).await?;
+        trials = decided.iter().map(|planned| trial_of(&begun.study, planned, &answered)).collect();
+    }
+    let next_trial = app.store.next_trial(&session.session_id).await?;
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
 }
 
@@ -236,6 +243,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     Ok(SessionState {
         session_id: session.session_id.clone(),
         study_id: session.study_id.clone(),
+        study: told(&study),
         status,
         consented: session.consented_at.is_some(),
         more: session.more,

@@ -6,6 +6,7 @@ use crate::app::{App, LoadedStudy, Stimuli};
 use crate::extract::{Parameters, Query, Researcher};
 use axum::extract::State;
 use kelir_store::StoreError;
+use kelir_study::StudyDefinition;
 use serde::Deserialize;
 use std::sync::Arc;
 use utoipa::IntoParams;
@@ -30,8 +31,12 @@ pub(crate) async fn get_study(
 ) -> Answered<Study> {
     let loaded = app.study(&study)?;
     loaded.ready()?;
-    let study = &loaded.study;
-    Ok(Fresh(Study {
+    Ok(Fresh(told(&loaded.study)))
+}
+
+/// What participants are told of a study.
+pub(super) fn told(study: &StudyDefinition) -> Study {
+    Study {
         id: study.id.clone(),
         title: study.title.clone(),
         question: study.question.clone(),
@@ -40,7 +45,7 @@ pub(crate) async fn get_study(
         texts: study.texts.clone(),
         estimated_minutes: study.estimated_minutes,
         trial_kinds: study.trial_names(),
-    }))
+    }
 }
 
 refusals!(List: Unauthorized, InvalidParameter);

@@ -1,6 +1,6 @@
 //! A block whose answers decide which of its levels comes next.
 
-use super::{Procedure, QuestPlus, QuestPlusRule, Staircase, StaircaseRule, Track, replay};
+use super::{Procedure, QuestPlus, QuestPlusRule, Staircase, StaircaseRule, Track};
 use crate::definition::{Block, GUESS, Psychometric};
 use kelir_stats::psychometric::{BeliefGrid, Lapse};
 use kelir_stats::{Result, StatsError};
@@ -48,32 +48,35 @@ impl Adaptive {
         }
     }
 
-    /// The level to show after these answers (whether the target was chosen, in the order of the trials); `None` when the procedure has ended.
+    /// The procedure before its first answer.
     ///
     /// # Errors
     /// The settings do not go with the block's levels; they name the key.
-    pub fn next_level(&self, block: &Block, answers: impl IntoIterator<Item = bool>) -> Result<Option<f64>> {
+    pub fn start(&self, block: &Block) -> Result<Running> {
         let Some(asked) = &block.psychometric else {
             return Err(StatsError::TooFew { name: "levels", len: 0, needed: 3 });
         };
         let sign = asked.direction.sign();
         let levels = rising(block, asked);
-        match self {
-            Adaptive::Staircase { .. } => {
-                let mut staircase = Staircase::new(self.staircase(&levels, asked)?)?;
-                replay(&mut staircase, answers);
-                // The places of levels are whole numbers; weighted steps between them show the nearest.
-                let place = staircase.stimulus().map(|place| place.round() as usize);
-                Ok(place.and_then(|place| levels.get(place)).map(|x| sign * x))
-            }
+        let procedure = match self {
+            Adaptive::Staircase { .. } => Either::Staircase(Staircase::new(self.staircase(&levels, asked)?)?),
             Adaptive::QuestPlus { trials, precise_enough } => {
                 let grid = grid(&levels, asked)?;
                 let rule = QuestPlusRule { grid, trials: *trials, precise_enough: *precise_enough };
-                let mut quest = QuestPlus::new(rule)?;
-                replay(&mut quest, answers);
-                Ok(quest.stimulus().map(|x| sign * x))
+                Either::Quest(Box::new(QuestPlus::new(rule)?))
             }
-        }
+        };
+        Ok(Running { sign, levels, procedure, answered: 0 })
+    }
+
+    /// The level to show after these answers (whether the target was chosen, in the order of the trials); `None` when the procedure has ended.
+    ///
+    /// # Errors
+    /// As [`Adaptive::start`].
+    pub fn next_level(&self, block: &Block, answers: impl IntoIterator<Item = bool>) -> Result<Option<f64>> {
+        let mut running = self.start(block)?;
+        answers.into_iter().for_each(|chose_target| running.answer(chose_target));
+        Ok(running.level())
     }
 
     /// Whether nothing comes after `trials` answers; `answers` gives them where they have to be looked at.
@@ -112,6 +115,49 @@ impl Adaptive {
             reversals: *reversals,
             trials: *trials,
         })
+    }
+}
+
+/// A block's procedure in the midst of its answers.
+#[derive(Clone, Debug)]
+pub struct Running {
+    sign: f64,
+    levels: Vec<f64>,
+    procedure: Either,
+    answered: usize,
+}
+
+#[derive(Clone, Debug)]
+enum Either {
+    Staircase(Staircase),
+    Quest(Box<QuestPlus>),
+}
+
+impl Running {
+    /// The level to show now; `None` when the procedure has ended.
+    pub fn level(&self) -> Option<f64> {
+        let x = match &self.procedure {
+            // The places of levels are whole numbers; weighted steps between them show the nearest.
+            Either::Staircase(staircase) => {
+                staircase.stimulus().and_then(|place| self.levels.get(place.round() as usize).copied())
+            }
+            Either::Quest(quest) => quest.stimulus(),
+        };
+        x.map(|x| self.sign * x)
+    }
+
+    /// Takes in whether the target was chosen at [`Running::level`].
+    pub fn answer(&mut self, chose_target: bool) {
+        self.answered += 1;
+        match &mut self.procedure {
+            Either::Staircase(staircase) => staircase.answer(chose_target),
+            Either::Quest(quest) => quest.answer(chose_target),
+        }
+    }
+
+    /// Answers taken in.
+    pub fn answered(&self) -> usize {
+        self.answered
     }
 }
 

@@ -11,7 +11,7 @@ mod staircase;
 #[cfg(test)]
 mod tests;
 
-pub use block::Adaptive;
+pub use block::{Adaptive, Running};
 pub use quest::{QuestPlus, QuestPlusRule};
 pub use staircase::{Bracket, Staircase, StaircaseRule, Track};
 

@@ -3,7 +3,7 @@
 use super::design::{Design, Supposed, Truth};
 use crate::answers::{Answers, Row, blocks};
 use crate::definition::{Block, GUESS};
-use crate::plan::{Trial, TrialPlan, next_trials};
+use crate::plan::{Procedures, Trial, TrialPlan};
 use kelir_stats::pairwise::Model;
 use kelir_stats::psychometric::Curve;
 use kelir_stats::random::Random;
@@ -19,6 +19,8 @@ pub(super) struct Crowd<'a> {
     plans: Vec<TrialPlan>,
     /// For each pair of the study, by its place: its block's truth, and its level.
     items: Vec<(Option<&'a Supposed>, Option<f64>)>,
+    /// The adaptive blocks' procedures before the first answer.
+    procedures: Procedures,
     /// For each block, the place of its first item.
     first_items: Vec<usize>,
     /// How many `[[truth]]` there are.
@@ -52,6 +54,7 @@ impl<'a> Crowd<'a> {
             design,
             plans: (0..most).map(|slot| TrialPlan::for_slot(study, slot)).collect(),
             items,
+            procedures: Procedures::of(study),
             first_items: blocks(study).map(|(_, items)| items.start as usize).collect(),
             entries,
         }
@@ -83,6 +86,7 @@ impl<'a> Crowd<'a> {
         let median = if careless { people.careless_rt_ms } else { people.rt_median_ms };
         let most = if stays { usize::MAX } else { last };
         let (mut trials, mut more) = (Cow::Borrowed(&plan.trials), plan.more);
+        let mut procedures = self.procedures.clone();
         let mut chose = Vec::new();
         while chose.len() < most {
             if chose.len() == trials.len() {
@@ -90,7 +94,7 @@ impl<'a> Crowd<'a> {
                     break;
                 }
                 let given = |trial: u32| chose.get(trial as usize).copied();
-                let next = next_trials(study, slot as u32, &trials, &given);
+                let next = procedures.next_trials(study, slot as u32, &trials, &given);
                 more = next.more;
                 trials.to_mut().extend(next.trials);
                 continue;

@@ -2,6 +2,7 @@
 
 use super::findings::PER_TRIAL;
 use super::*;
+use crate::answers::blocks;
 use crate::definition::StudyDefinition;
 
 /// `blocks` of (conditions, pairs, rest of the block) with rules of screening.
@@ -260,5 +261,58 @@ fn every_problem_of_a_design_is_named() {
             found.iter().any(|p| p.starts_with(&format!("d.toml: {named}"))),
             "{from} → {to}: {found:#?}"
         );
+    }
+}
+
+/// A two-interval block over nine levels, led by a procedure.
+fn led(procedure: &str) -> StudyDefinition {
+    let rest = format!(
+        "trial = \"two-interval\"\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n\
+         [blocks.adaptive]\n{procedure}"
+    );
+    study(
+        "incomplete = true",
+        &[("led", "pa mc", 9, &rest), ("fixed", "pa mc", 2, "trial = \"two-interval\"")],
+    )
+}
+
+const DESIGN: &str = "participants = [12]\nsimulations = 20\nseed = 4\nobservers = { dropout = 0.25 }\n[[truth]]\nblocks = [\"led\"]\n\
+    threshold = 4.3\nwidth = 4.0\nthreshold_sd = 0.0\n[[truth]]\npreference = 0.5\nicc = 0.1\n";
+
+#[test]
+fn adaptive_and_two_interval_blocks_are_taken_by_their_own_plans() {
+    for (procedure, trials) in [
+        ("procedure = \"staircase\"\ntrials = 60\nreversals = 60\ndown = 3\nsteps = [2, 1]", 60.0),
+        ("procedure = \"quest-plus\"\ntrials = 40", 40.0),
+    ] {
+        let design = design(led(procedure), DESIGN);
+        let crowd = Crowd::new(&design);
+        let answers = crowd.take(7);
+        let block = &blocks(&design.study).next().unwrap().1;
+        let mut finished = 0;
+        for participant in answers.participants() {
+            let own = participant.answers_to(block);
+            assert!(own.len() as f64 <= trials, "{}", own.len());
+            let screened = screen(&design.study, participant);
+            // Who saw the procedure to its end and the block after it is complete; the others are told so.
+            let complete = own.len() as f64 == trials && participant.answers().len() == own.len() + 2;
+            assert_eq!(screened.is_empty(), complete, "{screened:?}");
+            finished += usize::from(complete);
+        }
+        assert!((4..12).contains(&finished), "some leave: {finished}");
+        // Both alternatives stand first in one of every two trials.
+        let first =
+            answers.participants()[0].answers().iter().filter(|a| a.chose_first == a.chose_target).count();
+        assert!((18..=32).contains(&first), "{first}");
+
+        let power = power(&design, &|_| {});
+        let size = &power.sizes[0];
+        let covered = interval(size, "led", "threshold, posterior");
+        assert_eq!(covered.truth, Some(4.3));
+        assert!(covered.coverage.rate > 0.8 && covered.width.unwrap() < 2.0, "{procedure}: {covered:?}");
+        // Its choices are steered: no test of their number, no interval of their share.
+        assert!(size.tests.iter().all(|t| t.of != "led"), "{:?}", size.tests);
+        assert!(size.intervals.iter().all(|i| i.of != "led" || i.interval.starts_with("threshold")));
+        assert!(size.tests.iter().any(|t| t.of == "fixed"));
     }
 }
