@@ -1,6 +1,7 @@
 //! Helpers of the end-to-end tests: the real binary, a server, a database shell, a browser.
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -79,8 +80,13 @@ impl Server {
 
     /// Starts on a folder of [`small_data`] and waits until `small` can be taken.
     pub fn start_small(data: &Path) -> Self {
+        Self::start_with(data, "small")
+    }
+
+    /// Starts and waits until `study` can be taken.
+    pub fn start_with(data: &Path, study: &str) -> Self {
         let server = Self::start(data, false);
-        server.wait("/api/v1/studies/small");
+        server.wait(&format!("/api/v1/studies/{study}"));
         server
     }
 
@@ -156,6 +162,36 @@ pub fn sql(database: &Path, query: &str) -> Vec<Value> {
         Command::new("sqlite3").arg("-json").arg(database).arg(query).output().expect("sqlite3 is installed");
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     if out.stdout.trim_ascii().is_empty() { Vec::new() } else { serde_json::from_slice(&out.stdout).unwrap() }
+}
+
+/// The rows of a CSV (RFC 4180, no line breaks within cells), each by its columns' names.
+pub fn table(csv: &str) -> Vec<BTreeMap<String, String>> {
+    let mut lines = csv.lines().map(cells);
+    let names = lines.next().expect("a header");
+    lines
+        .map(|cells| {
+            assert_eq!(cells.len(), names.len(), "{cells:?}");
+            names.iter().cloned().zip(cells).collect()
+        })
+        .collect()
+}
+
+fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted, mut before) = (vec![String::new()], false, ' ');
+    for c in line.chars() {
+        match c {
+            // A quote within a quoted cell is written twice.
+            '"' if before == '"' && !quoted => {
+                quoted = true;
+                cells.last_mut().unwrap().push(c);
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            c => cells.last_mut().unwrap().push(c),
+        }
+        before = c;
+    }
+    cells
 }
 
 /// Runs a script of tests/browser with one JSON argument and answers the JSON of its last line.

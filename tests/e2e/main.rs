@@ -1,10 +1,12 @@
 //! End to end: the real binary, a real browser, a real database.
 #![allow(clippy::unwrap_used)]
 
+mod adaptive;
 mod cli;
 mod doors;
 mod film;
 mod invariants;
+mod kinds;
 mod report;
 mod survey;
 mod versions;
