@@ -89,8 +89,9 @@ fn check(files: Vec<PathBuf>) -> Result<()> {
     for file in files {
         match kelir_server::check_study(&file) {
             Ok(study) => {
-                let trials = study.most_trials();
-                print(&format!("{}: good ({} blocks, {trials} trials)", file.display(), study.blocks.len()))?;
+                let most = if study.blocks.iter().any(|b| b.adaptive.is_some()) { "at most " } else { "" };
+                let (blocks, trials) = (study.blocks.len(), study.most_trials());
+                print(&format!("{}: good (blocks: {blocks}, trials: {most}{trials})", file.display()))?;
             }
             Err(errors) => problems.push(errors.to_string()),
         }
