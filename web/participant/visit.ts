@@ -138,7 +138,7 @@ export class Visit {
   async #decided(): Promise<Trial | null> {
     if (this.#session.state?.more !== true) return null;
     const screen = this.#jsPsych.getDisplayElement() ?? cleared();
-    const waiting: Patience = { screen, heading: "One moment", sentence: "The next pictures depend on your answers, which are being stored." };
+    const waiting: Patience = { screen, heading: "One moment", sentence: "The next pictures depend on your answers: they come once these are stored." };
     await this.#stored(waiting);
     await patiently(waiting, this.#session.grown());
     screen.replaceChildren();
@@ -174,7 +174,7 @@ export class Visit {
   /** Waits until every answer is stored, then asks for the code: it exists only then. */
   async #finish(): Promise<void> {
     const screen = cleared();
-    const waiting: Patience = { screen, heading: "Almost done", sentence: "Your last answers are being stored. This takes a moment." };
+    const waiting: Patience = { screen, heading: "Almost done", sentence: "The study ends once your last answers are stored." };
     try {
       await this.#stored(waiting);
       showThanks(screen, this.#study, await patiently(waiting, this.#session.complete()));

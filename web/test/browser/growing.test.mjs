@@ -28,7 +28,7 @@ test("the line goes in the middle: the page waits, says so, and a reload changes
   await position(v.page, 2, "at most 43");
   down = true;
   await v.hook("choice-left").click();
-  const waiting = v.page.getByText("The next pictures depend on your answers, which are being stored.");
+  const waiting = v.page.getByText("The next pictures depend on your answers: they come once these are stored.");
   await waiting.waitFor();
   await v.page.getByText("No connection. Your answers are kept here and sent later; this page goes on by itself when it is back.").waitFor();
   assert.equal(await v.hook("choice-left").count(), 0, "nothing is shown that was not decided");
