@@ -1,9 +1,10 @@
 //! What was shown is what is judged: answers to different pictures are never pooled unless somebody names the versions, and a corrected comma
 //! hides nothing.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use kelir_tests::{Server, Taking, edit, fixture, kelir, kelir_ok, small_data, sql, take};
+use kelir_tests::{Server, Taking, edit, fixture, kelir, kelir_ok, small_data, sql, table, take};
 use serde_json::{Value, json};
 
 const ALL: [&str; 4] = ["left", "right", "left", "right"];
@@ -26,24 +27,11 @@ fn versions(data: &Path) -> Vec<Value> {
     serde_json::from_str::<Value>(&text).unwrap().as_array().unwrap().clone()
 }
 
-/// A header's column of a CSV whose cells hold no commas that matter here.
+/// A column of a CSV, by its name.
 fn column(csv: &str, name: &str) -> Vec<String> {
-    let mut lines = csv.lines().map(cells);
-    let at =
-        lines.next().unwrap().iter().position(|n| n == name).unwrap_or_else(|| panic!("no column {name}"));
-    lines.map(|cells| cells[at].clone()).collect()
-}
-
-fn cells(line: &str) -> Vec<String> {
-    let (mut cells, mut quoted) = (vec![String::new()], false);
-    for c in line.chars() {
-        match c {
-            '"' => quoted = !quoted,
-            ',' if !quoted => cells.push(String::new()),
-            c => cells.last_mut().unwrap().push(c),
-        }
-    }
-    cells
+    let cell =
+        |row: &BTreeMap<String, String>| row.get(name).unwrap_or_else(|| panic!("no column {name}")).clone();
+    table(csv).iter().map(cell).collect()
 }
 
 fn export(data: &Path, more: &[&str]) -> String {

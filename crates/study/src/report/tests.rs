@@ -143,3 +143,57 @@ fn the_papers_counts_are_judged_as_the_issue_says() {
     // Negative control: the second block's difference is significant, and nothing of the kind is said.
     assert!(!analysis([3, 10, 19]).notes.iter().any(|n| n.contains("not shown to be absent")));
 }
+
+#[test]
+fn methods_say_how_each_kind_of_trial_shows_its_pictures() {
+    let said = |text: &str| {
+        let report = Report::of(&StudyDefinition::parse("s.toml", text).unwrap(), &[]);
+        let layouts: Vec<String> = report.blocks.iter().map(|block| block.summary.layout.clone()).collect();
+        (report.methods.join(" "), layouts)
+    };
+    let (at_once, layouts) = said(STUDY);
+    assert!(at_once.contains("The two were shown beside each other, or below"), "{at_once}");
+    assert!(!at_once.contains("fixation"), "{at_once}");
+    assert_eq!(layouts, ["side by side", "side by side"]);
+    // One of three blocks asks otherwise: each sentence says of which it speaks.
+    let intervals =
+        "id = \"photos\"\ntrial = \"two-interval\"\ntrial_settings = { first_ms = 250, mask_ms = 0 }";
+    let (both, layouts) = said(&STUDY.replace("id = \"photos\"", intervals));
+    let sentence = "In the block \"Photos\" the two were shown one after the other (two-interval forced choice): a fixation cross for 500 ms, the \
+                    first picture for 250 ms, a mask for 0 ms and the second picture for 500 ms";
+    assert!(both.contains(sentence), "{both}");
+    assert!(
+        both.contains("In the blocks \"Stills\", \"Catch\" the two were shown beside each other"),
+        "{both}"
+    );
+    assert_eq!(layouts, ["side by side", "one after the other"]);
+}
+
+#[test]
+fn methods_say_which_procedure_led_a_block_and_cite_it() {
+    let items: Vec<String> =
+        (1..=3).map(|i| format!("{{ id = \"c{i}\", scene = \"a.toml\", level = {i} }}")).collect();
+    let led = |procedure: &str| {
+        let block = format!(
+            "pairs = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n[blocks.adaptive]\n{procedure}",
+            items.join(", ")
+        );
+        let text = STUDY.replace("pairs = [{ id = \"c\", scene = \"a.toml\" }]", &block);
+        let report = Report::of(&StudyDefinition::parse("s.toml", &text).unwrap(), &[]);
+        (report.methods.join(" "), report.references.join(" "))
+    };
+    let (methods, references) = led("procedure = \"staircase\"\ndown = 2\nreversals = 7\ntrials = 31");
+    let sentence = "In the block \"Photos\" an up-down staircase chose each trial's level from the answers before (2 choices of the target in a row \
+                    made it harder";
+    assert!(methods.contains(sentence) && methods.contains("7 reversals or 31 trials"), "{methods}");
+    assert!(references.contains("Levitt") && !references.contains("QUEST+: A"), "{references}");
+    let (methods, references) = led("procedure = \"staircase\"\nshare = 0.75\nreversals = 7\ntrials = 31");
+    assert!(methods.contains("settle where the target is chosen by 0.75"), "{methods}");
+    assert!(references.contains("Kaernbach"), "{references}");
+    let (methods, references) = led("procedure = \"quest-plus\"\ntrials = 31\nprecise_enough = 0.25");
+    assert!(
+        methods.contains("QUEST+ chose each trial's level") && methods.contains("below 0.25"),
+        "{methods}"
+    );
+    assert!(references.contains("Watson") && !references.contains("Levitt"), "{references}");
+}
