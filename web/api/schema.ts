@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 7276f8ab9fd3e8e78c2d4900b8ac1704565c0c36cc4644d2ee450a07ff9696a7 8930e7ba08fb0fa8877af77bda0c550392e406f64a4eb6bcae428471b6b4a9c0
+// Generated from openapi.json by `npm run types`; do not edit. cfac6f2ad77e1fad471c4f8def0e5bcf655e045c25a5754aa455a6a20293d811 1c04af0f208504f6825320d8f7764efbb8bce17a6f00c007ae8d5a3288d0e752
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -4112,9 +4112,9 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/vnd.kelir.animation+json": number[];
-                    "image/jpeg": number[];
-                    "image/png": number[];
+                    "application/vnd.kelir.animation+json": unknown;
+                    "image/jpeg": string;
+                    "image/png": string;
                 };
             };
             /** @description `If-None-Match` names them: the browser has them already. */

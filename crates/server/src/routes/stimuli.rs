@@ -8,7 +8,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use std::sync::Arc;
-use utoipa::IntoParams;
+use utoipa::{IntoParams, ToSchema};
 
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Path)]
@@ -19,6 +19,13 @@ pub(crate) struct StimulusPath {
 
 refusals!(Stimulus: NotFound);
 
+/// A file's bytes.
+// A `Vec<u8>` would be documented as a list of numbers.
+#[derive(ToSchema)]
+#[schema(value_type = String, format = Binary)]
+#[expect(dead_code, reason = "only the document speaks of it")]
+struct Bytes(Vec<u8>);
+
 /// The bytes of a stimulus, or of one frame of an animation; they never change.
 ///
 /// An animation is JSON (`application/vnd.kelir.animation+json`) that names its frames by hash.
@@ -26,7 +33,7 @@ refusals!(Stimulus: NotFound);
     get, path = "/stimuli/{sha256}", tag = "participants", params(StimulusPath),
     responses(
         (status = OK, description = "The bytes.", content(
-            (Vec<u8> = "image/png"), (Vec<u8> = "image/jpeg"), (Vec<u8> = "application/vnd.kelir.animation+json")
+            (inline(Bytes) = "image/png"), (inline(Bytes) = "image/jpeg"), (serde_json::Value = "application/vnd.kelir.animation+json")
         )),
         (status = NOT_MODIFIED, description = "`If-None-Match` names them: the browser has them already."),
         Stimulus,
