@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. cfac6f2ad77e1fad471c4f8def0e5bcf655e045c25a5754aa455a6a20293d811 1c04af0f208504f6825320d8f7764efbb8bce17a6f00c007ae8d5a3288d0e752
+// Generated from openapi.json by `npm run types`; do not edit. 29bdfcbdb8ce58225a8d791555108df2606195c108a23ef5cdd28775ab1f4b20 a0e1569b9f6ae81577c8c8f2f9b8da7aae93a9aac3e54b7ee3fe44b0d9664edc
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -1679,6 +1679,11 @@ export interface components {
          * @enum {string}
          */
         RankMethod: "exact" | "normal";
+        /**
+         * @description What happens when somebody comes whose id has a session in this study already.
+         * @enum {string}
+         */
+        Repeat: "flag" | "resume" | "refuse";
         /** @description The whole replication. */
         Replication: {
             /** @description The three comparisons in the paper's order. */
@@ -1698,6 +1703,19 @@ export interface components {
             scale?: components["schemas"]["ScaleIntervals"] | null;
             /** @description Why there is no scale. */
             scale_note?: string | null;
+        };
+        /** @description When an input counts as the response to a trial. What does not count is logged with its time. */
+        ResponseRules: {
+            /**
+             * Format: double
+             * @description How long after the last input that counted, in ms, 0 to 60000.
+             */
+            min_gap_ms?: number | null;
+            /**
+             * Format: double
+             * @description How long the stimulus must have been visible, in ms, 0 to 60000.
+             */
+            min_visible_ms?: number | null;
         };
         /** @description A logistic regression whose standard errors allow any dependence within participants. */
         RobustLogit: {
@@ -1823,6 +1841,15 @@ export interface components {
             min_rt_ms?: number | null;
             /** @description Whether choosing the same side in every one of at least five trials excludes the participant. */
             straight_lining: boolean;
+        };
+        /** @description Whose visit is whose. */
+        SessionRules: {
+            /** @description Parameters of the participant's link that stand in the table of participants, besides the one that names the participant. */
+            params?: string[];
+            /** @description Whether each visit is somebody else's, as on a laboratory's computer: nothing is resumed without being asked for. */
+            per_visit?: boolean;
+            /** @description What happens to an id that comes again. */
+            repeat?: components["schemas"]["Repeat"];
         };
         /** @description Where a session stands. */
         SessionState: {
@@ -2000,8 +2027,12 @@ export interface components {
             estimated_minutes: number;
             /** @description Its id, as in addresses. */
             id: string;
+            /** @description Whether each visit is somebody else's, as on a laboratory's computer. */
+            per_visit: boolean;
             /** @description The question over every trial. */
             question: string;
+            /** @description When an input counts as a response. */
+            response: components["schemas"]["ResponseRules"];
             /** @description Stimulus size [width, height] in pixels. */
             size: number[];
             /**
@@ -2028,6 +2059,11 @@ export interface components {
             };
             /**
              * Format: int32
+             * @description Whose defaults the file has; files without one have the first's.
+             */
+            edition?: number;
+            /**
+             * Format: int32
              * @description How long taking part is said to take, in minutes.
              */
             estimated_minutes: number;
@@ -2040,6 +2076,8 @@ export interface components {
             idle_minutes: number;
             /** @description The question over every pair. */
             question: string;
+            /** @description When an input counts as a response, as far as the file says so. */
+            response?: components["schemas"]["ResponseRules"];
             /** @description Rules of exclusion, stated before there are results. */
             screening?: components["schemas"]["Screening"];
             /**
@@ -2047,6 +2085,8 @@ export interface components {
              * @description Seed of every participant's trial plan, 0..=2^53.
              */
             seed: number;
+            /** @description Whose visit is whose. */
+            session?: components["schemas"]["SessionRules"];
             /** @description Stimulus size [width, height] in pixels. */
             size: number[];
             /**

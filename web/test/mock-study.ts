@@ -8,6 +8,8 @@ export const study: Omit<Study, "trial_kinds"> = {
   question: "Which image is more likely to be real?",
   surround: 0.2,
   size: [592, 333],
+  response: { min_visible_ms: 0, min_gap_ms: 0 },
+  per_visit: false,
   estimated_minutes: 3,
   texts: {
     welcome: [

@@ -28,7 +28,7 @@ pub use first_chain::GENESIS;
 pub use import::ImportedSession;
 pub use plans::{PlannedSession, PlannedTrial, StimulusHashes};
 pub use reading::StoredAnswers;
-pub use sessions::{Completed, NewSession, Participants, Session};
+pub use sessions::{Completed, NewSession, Participants, Session, SessionKind};
 pub use sqlite::Store;
 pub use stimuli::{ANIMATION, Render, StimulusInfo, StudyStimulus};
 pub use versions::{StudyVersion, VersionCounts};

@@ -5,12 +5,36 @@ use crate::error::StoreError;
 use crate::plans::{PlannedSession, insert_trials};
 use crate::sqlite::Store;
 use kelir_study::plan::lowest_free_slot;
-use serde::Serialize;
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::time::Duration;
 use utoipa::ToSchema;
+
+/// Whose a session is. The analysis is of participants alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum SessionKind {
+    /// A participant's.
+    #[default]
+    Participant,
+    /// A researcher's trial run.
+    Pilot,
+    /// A simulation's.
+    Simulated,
+}
+
+impl SessionKind {
+    /// As stored.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            SessionKind::Participant => "participant",
+            SessionKind::Pilot => "pilot",
+            SessionKind::Simulated => "simulated",
+        }
+    }
+}
 
 /// What is known of someone who begins.
 #[derive(Clone, Debug)]
@@ -25,6 +49,14 @@ pub struct NewSession {
     pub subject_id: Option<String>,
     /// SHA-256 of the token that the browser holds.
     pub token_hash: String,
+    /// Whose it is.
+    pub kind: SessionKind,
+    /// What was noticed when it began, in words such as `repeated_id`.
+    pub flags: Vec<String>,
+    /// The browser's own key of its wish to begin, the same when it asks again.
+    pub start_key: Option<String>,
+    /// What the browser calls itself.
+    pub user_agent: Option<String>,
     /// Parameters of the address.
     pub params: Value,
     /// What the browser said about its display.
@@ -54,6 +86,14 @@ pub struct Session {
     pub plan_seed: String,
     /// Whether answers will decide more trials than there are now.
     pub more: bool,
+    /// Whose it is.
+    pub kind: SessionKind,
+    /// What was noticed when it began.
+    pub flags: Vec<String>,
+    /// The browser's own key of its wish to begin.
+    pub start_key: Option<String>,
+    /// What the browser calls itself.
+    pub user_agent: Option<String>,
     /// Parameters of the address.
     pub params: Value,
     /// What the browser said about its display.
@@ -128,6 +168,10 @@ impl Store {
             slot,
             plan_seed: planned.seed,
             more: planned.next.more,
+            kind: new.kind,
+            flags: new.flags,
+            start_key: new.start_key,
+            user_agent: new.user_agent,
             params: new.params,
             display: new.display,
             created_at: now.clone(),
@@ -291,8 +335,8 @@ pub(crate) async fn insert_session(
 ) -> Result<(), StoreError> {
     sqlx::query(
         "INSERT INTO sessions (session_id, study_id, version, file_hash, subject_id, token_hash, slot, plan_seed, more, params, display,
-         created_at, last_seen_at, consented_at, consent_sha256, completed_at, completion_code)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)",
+         created_at, last_seen_at, consented_at, consent_sha256, completed_at, completion_code, kind, flags, start_key, user_agent)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21)",
     )
     .bind(&session.session_id)
     .bind(&session.study_id)
@@ -311,6 +355,10 @@ pub(crate) async fn insert_session(
     .bind(&session.consent_sha256)
     .bind(&session.completed_at)
     .bind(&session.completion_code)
+    .bind(session.kind.as_str())
+    .bind(json!(session.flags).to_string())
+    .bind(&session.start_key)
+    .bind(&session.user_agent)
     .execute(writer)
     .await?;
     Ok(())
@@ -331,6 +379,11 @@ fn read_session(row: &SqliteRow) -> Result<Session, StoreError> {
         slot: row.try_get("slot")?,
         plan_seed: row.try_get("plan_seed")?,
         more: row.try_get("more")?,
+        kind: serde_json::from_value(Value::String(row.try_get("kind")?))
+            .map_err(|e| StoreError::corrupt("kind", e))?,
+        flags: serde_json::from_value(json("flags")?).map_err(|e| StoreError::corrupt("flags", e))?,
+        start_key: row.try_get("start_key")?,
+        user_agent: row.try_get("user_agent")?,
         params: json("params")?,
         display: json("display")?,
         created_at: row.try_get("created_at")?,

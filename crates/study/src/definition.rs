@@ -1,6 +1,7 @@
 //! What a study is, once its file has been read and found right.
 
 use crate::adaptive::Adaptive;
+use crate::conduct::{ResponseRules, SessionRules};
 use crate::trials::{TrialKind, TrialName};
 use kelir_stats::psychometric::{Lapse, Sigmoid};
 use serde::{Deserialize, Serialize};
@@ -39,6 +40,15 @@ pub struct StudyDefinition {
     // New optional keys are left out of the JSON at their default: adding one must not change older studies' hashes.
     #[serde(default, skip_serializing_if = "is_default")]
     pub screening: Screening,
+    /// Whose defaults the file has; files without one have the first's.
+    #[serde(default = "first_edition", skip_serializing_if = "is_first_edition")]
+    pub edition: u32,
+    /// When an input counts as a response, as far as the file says so.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub response: ResponseRules,
+    /// Whose visit is whose.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub session: SessionRules,
 }
 
 /// The code at the end and where it leads.
@@ -219,6 +229,14 @@ impl std::fmt::Display for ItemsKey {
     }
 }
 
+fn first_edition() -> u32 {
+    1
+}
+
+fn is_first_edition(edition: &u32) -> bool {
+    *edition == 1
+}
+
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
@@ -227,6 +245,11 @@ impl StudyDefinition {
     /// The most trials that a participant can see; fewer where an adaptive block ends early.
     pub fn most_trials(&self) -> usize {
         self.blocks.iter().map(Block::most_trials).sum()
+    }
+
+    /// When an input counts as a response, with the edition's defaults.
+    pub fn response_rules(&self) -> ResponseRules {
+        self.response.of_edition(self.edition)
     }
 
     /// The kinds of its trials, in the order of first use.

@@ -2,6 +2,7 @@
 //!
 //! Pure: no IO but the text a caller hands in, no clock, no randomness but from stated seeds.
 
+mod conduct;
 mod definition;
 mod fields;
 mod parse;
@@ -19,6 +20,7 @@ pub mod screening;
 pub mod trials;
 pub mod versions;
 
+pub use conduct::{NEWEST_EDITION, Repeat, ResponseRules, SessionRules};
 pub use definition::{
     Block, Completion, Condition, Direction, GUESS, Item, Kind, Psychometric, Screening, StudyDefinition,
     Texts,

@@ -4,6 +4,7 @@ mod adaptive;
 mod conditions;
 mod psychometric;
 
+use crate::conduct::{NEWEST_EDITION, ResponseRules, SessionRules};
 use crate::definition::{Block, Completion, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts};
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
 use crate::problems::{Problem, StudyErrors};
@@ -75,6 +76,11 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
     let idle_minutes = fields
         .get("idle_minutes", "whole minutes from 1 to 100000", |v| integer(v, 1, 100_000))
         .or_else(|| fields_default(table, "idle_minutes", 60));
+    let edition = fields
+        .get("edition", "1 or 2", |v| integer(v, 1, i64::from(NEWEST_EDITION)))
+        .or_else(|| fields_default(table, "edition", 1));
+    let response = ResponseRules::read(gatherer, &mut fields);
+    let session = SessionRules::read(gatherer, &mut fields);
     let completion = read_completion(gatherer, &mut fields);
     let screening = read_screening(gatherer, &mut fields);
     let texts = read_texts(gatherer, &mut fields);
@@ -95,6 +101,9 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
         conditions,
         blocks,
         screening: screening?,
+        edition: u32::try_from(edition?).ok()?,
+        response: response?,
+        session: session?,
     })
 }
 

@@ -20,8 +20,8 @@ pub struct VersionStimulus {
 }
 
 /// Keys of a study that nobody judges by: what is read before and after, and how people are received. A block's title is for researchers alone.
-const NOT_JUDGED_BY: [&str; 6] =
-    ["title", "estimated_minutes", "idle_minutes", "completion", "conduct", "panel"];
+const NOT_JUDGED_BY: [&str; 7] =
+    ["title", "estimated_minutes", "idle_minutes", "completion", "conduct", "panel", "session"];
 const TEXTS_NOT_JUDGED_BY: [&str; 4] = ["welcome", "consent", "debriefing", "thanks"];
 
 impl StudyDefinition {

@@ -1,9 +1,9 @@
 //! Studies and their versions.
 
 use kelir_report::Participants;
-use kelir_study::Texts;
 use kelir_study::schema::{Column, worded};
 use kelir_study::trials::TrialName;
+use kelir_study::{ResponseRules, Texts};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -25,6 +25,10 @@ pub struct Study {
     pub texts: Texts,
     /// How long taking part is said to take, in minutes.
     pub estimated_minutes: u32,
+    /// When an input counts as a response.
+    pub response: ResponseRules,
+    /// Whether each visit is somebody else's, as on a laboratory's computer.
+    pub per_visit: bool,
     /// Kinds of trial, in the order of first use.
     pub trial_kinds: Vec<TrialName>,
 }

@@ -13,7 +13,7 @@ use crate::password::{random_code, random_token};
 use axum::extract::State;
 use axum::http::StatusCode;
 use kelir_store::{
-    Appended, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session,
+    Appended, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session, SessionKind,
     StimulusHashes, sha256_hex,
 };
 use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
@@ -66,6 +66,10 @@ pub(crate) async fn create_session(
         file_hash: loaded.file_hash.clone(),
         subject_id: subject(&params),
         token_hash: sha256_hex(token.as_bytes()),
+        kind: SessionKind::Participant,
+        flags: Vec::new(),
+        start_key: None,
+        user_agent: None,
         params: params.into_iter().collect(),
         display: new.display.unwrap_or_default().into(),
         idle: loaded.idle(),

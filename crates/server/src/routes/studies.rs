@@ -44,6 +44,8 @@ pub(super) fn told(study: &StudyDefinition) -> Study {
         size: study.size,
         texts: study.texts.clone(),
         estimated_minutes: study.estimated_minutes,
+        response: study.response_rules(),
+        per_visit: study.session.per_visit,
         trial_kinds: study.trial_names(),
     }
 }

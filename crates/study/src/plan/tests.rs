@@ -45,6 +45,9 @@ fn study(seed: u64, items: &[usize]) -> StudyDefinition {
             })
             .collect(),
         screening: Default::default(),
+        edition: 1,
+        response: Default::default(),
+        session: Default::default(),
     }
 }
 
