@@ -27,7 +27,7 @@ const { metafile } = await build({
   target: ["es2022", "chrome100", "firefox100", "safari15.4"],
   charset: "utf8",
   legalComments: "none", // the notices are in licenses.txt
-  loader: { ".svg": "copy" },
+  loader: { ".svg": "copy", ".ftl": "text" },
   metafile: true,
   logLevel: "warning",
 });
