@@ -28,7 +28,7 @@ const { metafile } = await build({
   target,
   charset: "utf8",
   legalComments: "none", // the notices are in licenses.txt
-  loader: { ".svg": "copy" },
+  loader: { ".svg": "copy", ".ftl": "text" },
   metafile: true,
   logLevel: "warning",
 });
