@@ -58,9 +58,10 @@ fn participants(report: &StudyReport) -> Section {
         };
         pieces.push(Piece::Text(format!("Nobody is excluded. {why}")));
     } else {
-        let rows = report.excluded.iter().take(MOST_LISTED).map(|excluded| {
-            Row::Cells(vec![Cell::text(&excluded.session_id), Cell::text(&excluded.why)])
-        });
+        let rows =
+            report.excluded.iter().take(MOST_LISTED).map(|excluded| {
+                Row::Cells(vec![Cell::text(&excluded.session_id), Cell::text(&excluded.why)])
+            });
         let caption = format!(
             "{} excluded by the study's rules, which were stated before there were answers.",
             count(report.excluded.len() as u64, "participant")
@@ -82,7 +83,11 @@ fn participants(report: &StudyReport) -> Section {
             "{} of persons who had taken part before; their first complete one counts.",
             count(repeated.len() as u64, "session")
         );
-        pieces.push(Piece::Table(Table::new(caption, &["session", "the one that counts"], rows.map(row).collect())));
+        pieces.push(Piece::Table(Table::new(
+            caption,
+            &["session", "the one that counts"],
+            rows.map(row).collect(),
+        )));
     }
     pieces.extend(flagged(report));
     Section::new("Participants", pieces)

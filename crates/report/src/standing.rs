@@ -56,7 +56,8 @@ impl Standing {
     /// Of these sessions, judged; `excludes` are the flags by which the study's rules leave out.
     pub fn of(judged: &Judged<'_>, with: &[SessionKind], excludes: &[Flag]) -> Standing {
         let kind = |wanted: SessionKind| {
-            let of_kind = |(_, why): &&(&Visit, LeftOut)| matches!(why, LeftOut::Kind(kind) if *kind == wanted);
+            let of_kind =
+                |(_, why): &&(&Visit, LeftOut)| matches!(why, LeftOut::Kind(kind) if *kind == wanted);
             judged.left_out.iter().filter(of_kind).count() as u64
         };
         let flagged = Flag::ALL.iter().map(|flag| Flagged {
@@ -81,11 +82,21 @@ impl Standing {
     }
 
     /// With the sentence: what these numbers come to, and nothing that they do not say.
-    pub fn summarised(self, people: &Participants, excluded: &[Excluded], others: &[PooledVersion]) -> Standing {
+    pub fn summarised(
+        self,
+        people: &Participants,
+        excluded: &[Excluded],
+        others: &[PooledVersion],
+    ) -> Standing {
         Standing { summary: self.sentences(people, excluded, others).join(" "), ..self }
     }
 
-    fn sentences(&self, people: &Participants, excluded: &[Excluded], others: &[PooledVersion]) -> Vec<String> {
+    fn sentences(
+        &self,
+        people: &Participants,
+        excluded: &[Excluded],
+        others: &[PooledVersion],
+    ) -> Vec<String> {
         let mut parts = Vec::new();
         if people.started == 0 || people.started != people.completed {
             parts.push(format!("{} began", people.started));
@@ -129,7 +140,12 @@ impl Standing {
         let elsewhere: u64 = others.iter().map(|version| version.sessions).sum();
         if people.started == 0 && elsewhere > 0 {
             let versions = others.iter().filter(|version| version.sessions > 0).count() as u64;
-            sentences.push(format!("{} of the study {} {}.", count(versions, "other version"), if versions == 1 { "has" } else { "have" }, count(elsewhere, "session")));
+            sentences.push(format!(
+                "{} of the study {} {}.",
+                count(versions, "other version"),
+                if versions == 1 { "has" } else { "have" },
+                count(elsewhere, "session")
+            ));
         }
         sentences
     }
@@ -147,9 +163,17 @@ impl Excluded {
 mod tests {
     use super::*;
 
-    fn said(started: u64, in_progress: u64, completed: u64, standing: &Standing, excluded: &[bool]) -> String {
+    fn said(
+        started: u64,
+        in_progress: u64,
+        completed: u64,
+        standing: &Standing,
+        excluded: &[bool],
+    ) -> String {
         let people = Participants { started, in_progress, completed };
-        let one = |is_completed: &bool| Excluded::new("s", vec![Exclusion::StraightLining { trials: 5 }], *is_completed);
+        let one = |is_completed: &bool| {
+            Excluded::new("s", vec![Exclusion::StraightLining { trials: 5 }], *is_completed)
+        };
         let excluded: Vec<Excluded> = excluded.iter().map(one).collect();
         standing.clone().summarised(&people, &excluded, &[]).summary
     }
@@ -168,7 +192,8 @@ mod tests {
             "4 began, 2 completed, 1 in progress, 2 left out by your rules (1 of them completed), 1 judged. 1 trial run is left out."
         );
         let again = Repeated { session_id: "2".into(), counted: "1".into() };
-        let repeats = Standing { judged: 1, repeated: vec![again.clone(), again], simulated: 3, ..Standing::default() };
+        let repeats =
+            Standing { judged: 1, repeated: vec![again.clone(), again], simulated: 3, ..Standing::default() };
         assert_eq!(
             said(3, 0, 3, &repeats, &[]),
             "3 completed, 1 judged. 2 sessions of persons who had taken part before are left out. 3 simulated sessions are left out."
@@ -178,7 +203,9 @@ mod tests {
     #[test]
     fn an_empty_version_says_where_the_answers_are() {
         let other = |sessions| PooledVersion { version: "a".into(), sessions, answers: 0 };
-        let of = |others: &[PooledVersion]| Standing::default().summarised(&Participants::default(), &[], others).summary;
+        let of = |others: &[PooledVersion]| {
+            Standing::default().summarised(&Participants::default(), &[], others).summary
+        };
         assert_eq!(of(&[other(2)]), "0 began. 1 other version of the study has 2 sessions.");
         assert_eq!(of(&[other(2), other(1)]), "0 began. 2 other versions of the study have 3 sessions.");
     }

@@ -259,7 +259,10 @@ mod tests {
         assert_eq!("01234567,current".parse::<With>().unwrap(), two);
         assert_eq!("all".parse::<With>().unwrap(), With::All);
         assert_eq!("".parse::<With>().unwrap(), With::default());
-        assert_eq!("simulated,pilot".parse::<Include>().unwrap().0, [SessionKind::Simulated, SessionKind::Pilot]);
+        assert_eq!(
+            "simulated,pilot".parse::<Include>().unwrap().0,
+            [SessionKind::Simulated, SessionKind::Pilot]
+        );
         assert_eq!("".parse::<Include>().unwrap(), Include::default());
         for wrong in ["participant", "pilot,pilot", "pilot,", "Pilot"] {
             assert!(wrong.parse::<Include>().is_err(), "{wrong}");

@@ -3,8 +3,8 @@
 use super::Study;
 use kelir_study::Kind;
 use kelir_study::schema::worded;
-use kelir_study::visits::{ID_PARAMETERS, LONGEST_ID, SessionKind};
 use kelir_study::trials::{Role, TrialName, TrialSettings};
+use kelir_study::visits::{ID_PARAMETERS, LONGEST_ID, SessionKind};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;

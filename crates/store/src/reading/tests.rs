@@ -32,7 +32,7 @@ async fn take(store: &Store, people: usize) {
             token_hash: "t".to_owned(),
             kind: Default::default(),
             flags: Vec::new(),
-        repeat: Default::default(),
+            repeat: Default::default(),
             start_key: None,
             user_agent: None,
             params: serde_json::json!({}),
@@ -48,7 +48,10 @@ async fn take(store: &Store, people: usize) {
             let trials = plan.trials.into_iter().map(filled).collect();
             Ok::<_, StoreError>(PlannedSession { seed: plan.seed, next: NextTrials { trials, more: false } })
         };
-        sessions.push((study.blocks[0].trial.rules(), store.create_session(new, plan).await.unwrap().session().unwrap()));
+        sessions.push((
+            study.blocks[0].trial.rules(),
+            store.create_session(new, plan).await.unwrap().session().unwrap(),
+        ));
     }
     for trial_index in 0..3u32 {
         for (i, (rules, session)) in sessions.iter().enumerate() {

@@ -132,7 +132,9 @@ pub fn participants_codebook(params: &[String]) -> Vec<Column> {
         name: param(name),
         kind: "text".to_owned(),
         unit: String::new(),
-        meaning: format!("Parameter {name} of the participant's link, as it was sent; empty where it was not there."),
+        meaning: format!(
+            "Parameter {name} of the participant's link, as it was sent; empty where it was not there."
+        ),
         values: Vec::new(),
     }));
     all
@@ -169,9 +171,16 @@ impl ParticipantColumns {
     }
 
     /// The cells of the columns of [`participants_codebook`].
-    pub fn cells(&self, params: &[String], sent: &BTreeMap<String, String>, columns: &[Column]) -> Vec<String> {
-        let mut values: Map<String, Value> =
-            serde_json::to_value(self).ok().and_then(|record| record.as_object().cloned()).unwrap_or_default();
+    pub fn cells(
+        &self,
+        params: &[String],
+        sent: &BTreeMap<String, String>,
+        columns: &[Column],
+    ) -> Vec<String> {
+        let mut values: Map<String, Value> = serde_json::to_value(self)
+            .ok()
+            .and_then(|record| record.as_object().cloned())
+            .unwrap_or_default();
         values.extend(params.iter().map(|name| (param(name), json!(sent.get(name)))));
         columns.iter().map(|column| values.get(&column.name).map(plain).unwrap_or_default()).collect()
     }

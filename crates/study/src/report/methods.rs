@@ -86,7 +86,9 @@ fn screening(study: &StudyDefinition) -> String {
     if rules.straight_lining {
         excluded.push("who chose the same side in every trial".to_owned());
     }
-    excluded.extend(rules.flags.iter().map(|flag| format!("of whose session it was noticed that {}", flag.meaning())));
+    excluded.extend(
+        rules.flags.iter().map(|flag| format!("of whose session it was noticed that {}", flag.meaning())),
+    );
     if rules.incomplete {
         excluded.push("who did not finish".to_owned());
     }

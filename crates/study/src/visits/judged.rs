@@ -65,8 +65,11 @@ impl<'a> Judged<'a> {
         visits: &'a [Visit],
         with: &[SessionKind],
     ) -> Judged<'a> {
-        let answered: HashMap<&str, &Participant> =
-            answers.participants().into_iter().map(|participant| (&*participant.session_id, participant)).collect();
+        let answered: HashMap<&str, &Participant> = answers
+            .participants()
+            .into_iter()
+            .map(|participant| (&*participant.session_id, participant))
+            .collect();
         let counts = |visit: &Visit| visit.kind == SessionKind::Participant || with.contains(&visit.kind);
         let counted = counted(visits.iter().filter(|visit| counts(visit)), &answered);
         let mut all = Judged::default();
@@ -74,7 +77,8 @@ impl<'a> Judged<'a> {
             let session = visit.session_id.as_str();
             let participant = answered.get(session).copied();
             let flags = visit.flags(participant.map_or(Pace::default(), |p| p.pace));
-            let repeats = visit.person.as_deref().and_then(|person| counted.get(person)).filter(|id| **id != session);
+            let repeats =
+                visit.person.as_deref().and_then(|person| counted.get(person)).filter(|id| **id != session);
             let why = match (participant, repeats) {
                 _ if !counts(visit) => Some(LeftOut::Kind(visit.kind)),
                 (None, _) => None,

@@ -55,7 +55,8 @@ impl Pace {
     /// Of these answers and those that came later.
     pub fn then(self, later: Pace) -> Pace {
         let latest = later.latest_start_us.map(|start| start.saturating_sub(self.claimed_us));
-        let hurried = self.ends.zip(later.ends).is_some_and(|([_, last], [first, _])| last.is_too_soon_for(&first));
+        let hurried =
+            self.ends.zip(later.ends).is_some_and(|([_, last], [first, _])| last.is_too_soon_for(&first));
         Pace {
             claimed_us: self.claimed_us.saturating_add(later.claimed_us),
             latest_start_us: [self.latest_start_us, latest].into_iter().flatten().min(),
@@ -70,7 +71,8 @@ impl Pace {
 
     /// Whether the answers claim more time than there was.
     pub fn is_faster_than_clock(&self, consented_us: Option<i64>) -> bool {
-        let before = |start: i64| consented_us.is_some_and(|consented| start.saturating_add(ALLOWANCE_US) < consented);
+        let before =
+            |start: i64| consented_us.is_some_and(|consented| start.saturating_add(ALLOWANCE_US) < consented);
         self.is_hurried || self.latest_start_us.is_some_and(before)
     }
 

@@ -52,7 +52,10 @@ fn a_trial_that_an_answer_decides_is_not_answered_sooner_than_it_claims() {
     let consented = Some(900 * SECOND);
     assert!(steps(SECOND / 2, true).is_faster_than_clock(consented));
     assert!(!steps(2 * SECOND, true).is_faster_than_clock(consented));
-    assert!(!steps(SECOND / 2, false).is_faster_than_clock(consented), "a plan that is known can be answered offline");
+    assert!(
+        !steps(SECOND / 2, false).is_faster_than_clock(consented),
+        "a plan that is known can be answered offline"
+    );
 }
 
 #[test]
@@ -139,8 +142,11 @@ fn one_session_a_person_is_judged_the_first_complete_one() {
     let judged = Judged::of(&study, &answers, &visits, &[]);
     assert_eq!(ids(&judged.judged), ["3", "4", "5", "6"]);
     assert_eq!(ids(&judged.everybody), ["3", "4", "5", "6"]);
-    let left: Vec<(&str, &LeftOut)> = judged.left_out.iter().map(|(visit, why)| (visit.session_id.as_str(), why)).collect();
-    let of = |session_id: &str, counted: &str| LeftOut::Repeated(Repeated { session_id: session_id.into(), counted: counted.into() });
+    let left: Vec<(&str, &LeftOut)> =
+        judged.left_out.iter().map(|(visit, why)| (visit.session_id.as_str(), why)).collect();
+    let of = |session_id: &str, counted: &str| {
+        LeftOut::Repeated(Repeated { session_id: session_id.into(), counted: counted.into() })
+    };
     assert_eq!(left, [("1", &of("1", "3")), ("2", &of("2", "3")), ("7", &of("7", "6"))]);
 }
 
@@ -158,7 +164,8 @@ fn trial_runs_and_simulations_are_left_out_unless_asked_for_and_count_against_no
 
 #[test]
 fn what_was_noticed_leaves_out_by_the_studys_rules_alone() {
-    let flagged = Visit { flags: vec![Flag::ManyStarts], consented_us: Some(8 * SECOND), ..visit("1", None, Some(9)) };
+    let flagged =
+        Visit { flags: vec![Flag::ManyStarts], consented_us: Some(8 * SECOND), ..visit("1", None, Some(9)) };
     let (all, without) = (study("[screening]\nflags = [\"faster_than_clock\", \"many_starts\"]"), study(""));
     let visits = [flagged];
     let answers = answers(&all, &["1"]);
@@ -169,7 +176,11 @@ fn what_was_noticed_leaves_out_by_the_studys_rules_alone() {
     let judged = Judged::of(&without, &answers, &visits, &[]);
     assert_eq!((judged.judged.len(), judged.left_out.len(), judged.flags.len()), (1, 0, 1));
     let simulated = Visit { kind: SessionKind::Simulated, ..visits[0].clone() };
-    assert_eq!(simulated.flags(answers.participants()[0].pace), [Flag::ManyStarts], "a simulation's time is its own");
+    assert_eq!(
+        simulated.flags(answers.participants()[0].pace),
+        [Flag::ManyStarts],
+        "a simulation's time is its own"
+    );
 }
 
 fn params(list: &[(&str, &str)]) -> BTreeMap<String, String> {
