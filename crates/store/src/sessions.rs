@@ -2,41 +2,19 @@
 
 use crate::clock;
 use crate::error::StoreError;
+use crate::persons::{Begun, settle};
 use crate::plans::{PlannedSession, insert_trials};
 use crate::sqlite::Store;
 use crate::writer::Refused;
+use kelir_study::Repeat;
 use kelir_study::plan::lowest_free_slot;
 use rusqlite::{Connection, params};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value, json};
-use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// Whose a session is. The analysis is of participants alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum SessionKind {
-    /// A participant's.
-    #[default]
-    Participant,
-    /// A researcher's trial run.
-    Pilot,
-    /// A simulation's.
-    Simulated,
-}
-
-impl SessionKind {
-    /// As stored.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            SessionKind::Participant => "participant",
-            SessionKind::Pilot => "pilot",
-            SessionKind::Simulated => "simulated",
-        }
-    }
-}
+pub use kelir_study::visits::SessionKind;
 
 /// What is known of someone who begins.
 #[derive(Clone, Debug)]
@@ -55,6 +33,8 @@ pub struct NewSession {
     pub kind: SessionKind,
     /// What was noticed when it began, in words such as `repeated_id`.
     pub flags: Vec<String>,
+    /// What happens where the same person has a session of the study already.
+    pub repeat: Repeat,
     /// The browser's own key of its wish to begin, the same when it asks again.
     pub start_key: Option<String>,
     /// What the browser calls itself.
@@ -135,7 +115,8 @@ pub struct Participants {
 }
 
 impl Store {
-    /// Begins a session in the lowest slot that no completed or active session of this version holds. `plan` is asked for
+    /// Begins a session, unless the same person has one and the study's policy says otherwise, in the lowest slot that no participant's completed
+    /// or active session of this version holds. `plan` is asked for
     /// that slot's plan while the slot is held, so two newcomers never get the same.
     ///
     /// # Errors
@@ -144,7 +125,7 @@ impl Store {
         &self,
         new: NewSession,
         plan: impl FnOnce(u32) -> Result<PlannedSession, E> + Send + 'static,
-    ) -> Result<Session, E> {
+    ) -> Result<Begun, E> {
         self.write_or(move |writer| create(writer, new, plan)).await
     }
 
@@ -153,11 +134,8 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn session(&self, session_id: &str) -> Result<Option<Session>, StoreError> {
-        let row = sqlx::query("SELECT * FROM sessions WHERE session_id = $1")
-            .bind(session_id)
-            .fetch_optional(&self.reader)
-            .await?;
-        row.as_ref().map(read_session).transpose()
+        let session_id = session_id.to_owned();
+        self.readers.read(move |connection| session(connection, &session_id)).await
     }
 
     /// All sessions of these versions of a study, oldest first.
@@ -166,14 +144,20 @@ impl Store {
     /// The database cannot be read.
     pub async fn sessions(&self, study_id: &str, versions: &[String]) -> Result<Vec<Session>, StoreError> {
         let versions = serde_json::to_string(versions).map_err(|e| StoreError::corrupt("versions", e))?;
-        let rows = sqlx::query(
-            "SELECT * FROM sessions WHERE study_id = $1 AND version IN (SELECT value FROM json_each($2)) ORDER BY session_id",
-        )
-        .bind(study_id)
-        .bind(versions)
-        .fetch_all(&self.reader)
-        .await?;
-        rows.iter().map(read_session).collect()
+        let study_id = study_id.to_owned();
+        self.readers
+            .read(move |connection| {
+                let mut query = connection.prepare_cached(
+                    "SELECT * FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id",
+                )?;
+                let mut rows = query.query([study_id, versions])?;
+                let mut sessions = Vec::new();
+                while let Some(row) = rows.next()? {
+                    sessions.push(read_session(row)?);
+                }
+                Ok(sessions)
+            })
+            .await
     }
 
     /// Notes that the session is alive, which keeps its slot.
@@ -267,11 +251,14 @@ impl Store {
 
 fn create<E>(
     writer: &Connection,
-    new: NewSession,
+    mut new: NewSession,
     plan: impl FnOnce(u32) -> Result<PlannedSession, E>,
-) -> Result<Session, Refused<E>> {
+) -> Result<Begun, Refused<E>> {
+    if let Some(settled) = settle(writer, &mut new)? {
+        return Ok(settled);
+    }
     let mut held = writer.prepare_cached(
-        "SELECT slot FROM sessions WHERE study_id = ?1 AND version = ?2
+        "SELECT slot FROM sessions WHERE study_id = ?1 AND version = ?2 AND kind = 'participant'
              AND (completed_at IS NOT NULL OR last_seen_at > ?3)",
     )?;
     let held = held
@@ -306,7 +293,7 @@ fn create<E>(
     };
     insert_session(writer, &session)?;
     insert_trials(writer, &session.session_id, &planned.next.trials, &session.created_at, 0)?;
-    Ok(session)
+    Ok(Begun::New(session))
 }
 
 fn complete(writer: &Connection, session_id: &str, code: &str) -> Result<Completed, StoreError> {
@@ -368,33 +355,40 @@ pub(crate) fn insert_session(writer: &Connection, session: &Session) -> Result<(
     Ok(())
 }
 
-fn read_session(row: &SqliteRow) -> Result<Session, StoreError> {
+/// The session with this id, as it stands in this transaction.
+pub(crate) fn session(connection: &Connection, session_id: &str) -> Result<Option<Session>, StoreError> {
+    let mut query = connection.prepare_cached("SELECT * FROM sessions WHERE session_id = ?1")?;
+    let mut rows = query.query([session_id])?;
+    rows.next()?.map(read_session).transpose()
+}
+
+pub(crate) fn read_session(row: &rusqlite::Row<'_>) -> Result<Session, StoreError> {
     let json = |column: &'static str| -> Result<Value, StoreError> {
-        let text: String = row.try_get(column)?;
+        let text: String = row.get(column)?;
         serde_json::from_str(&text).map_err(|e| StoreError::corrupt(column, e))
     };
     Ok(Session {
-        session_id: row.try_get("session_id")?,
-        study_id: row.try_get("study_id")?,
-        version: row.try_get("version")?,
-        file_hash: row.try_get("file_hash")?,
-        subject_id: row.try_get("subject_id")?,
-        token_hash: row.try_get("token_hash")?,
-        slot: row.try_get("slot")?,
-        plan_seed: row.try_get("plan_seed")?,
-        more: row.try_get("more")?,
-        kind: serde_json::from_value(Value::String(row.try_get("kind")?))
+        session_id: row.get("session_id")?,
+        study_id: row.get("study_id")?,
+        version: row.get("version")?,
+        file_hash: row.get("file_hash")?,
+        subject_id: row.get("subject_id")?,
+        token_hash: row.get("token_hash")?,
+        slot: row.get("slot")?,
+        plan_seed: row.get("plan_seed")?,
+        more: row.get("more")?,
+        kind: serde_json::from_value(Value::String(row.get("kind")?))
             .map_err(|e| StoreError::corrupt("kind", e))?,
         flags: serde_json::from_value(json("flags")?).map_err(|e| StoreError::corrupt("flags", e))?,
-        start_key: row.try_get("start_key")?,
-        user_agent: row.try_get("user_agent")?,
+        start_key: row.get("start_key")?,
+        user_agent: row.get("user_agent")?,
         params: json("params")?,
         display: json("display")?,
-        created_at: row.try_get("created_at")?,
-        last_seen_at: row.try_get("last_seen_at")?,
-        consented_at: row.try_get("consented_at")?,
-        consent_sha256: row.try_get("consent_sha256")?,
-        completed_at: row.try_get("completed_at")?,
-        completion_code: row.try_get("completion_code")?,
+        created_at: row.get("created_at")?,
+        last_seen_at: row.get("last_seen_at")?,
+        consented_at: row.get("consented_at")?,
+        consent_sha256: row.get("consent_sha256")?,
+        completed_at: row.get("completed_at")?,
+        completion_code: row.get("completion_code")?,
     })
 }

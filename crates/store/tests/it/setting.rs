@@ -156,6 +156,7 @@ pub async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
         token_hash: "t".to_owned(),
         kind: Default::default(),
         flags: Vec::new(),
+        repeat: Default::default(),
         start_key: None,
         user_agent: None,
         params: json!({}),
@@ -163,7 +164,8 @@ pub async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
         idle,
     };
     let served = served.clone();
-    store.create_session(new, move |slot| Ok::<_, StoreError>(served.plan(slot))).await.unwrap()
+    let plan = move |slot| Ok::<_, StoreError>(served.plan(slot));
+    store.create_session(new, plan).await.unwrap().session().unwrap()
 }
 
 /// An answer as a page sends it to a kind of trial.
