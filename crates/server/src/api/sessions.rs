@@ -98,6 +98,8 @@ pub struct SessionState {
     pub study: Study,
     /// How far it is.
     pub status: SessionStatus,
+    /// Whether the link named the participant: who comes by it again is the same person.
+    pub named: bool,
     /// Whether consent has been given.
     pub consented: bool,
     /// The trials that are decided so far, by index from 0. The list only grows.

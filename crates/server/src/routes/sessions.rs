@@ -294,6 +294,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         study_id: session.study_id.clone(),
         study: told(&study),
         status,
+        named: session.subject_id != session.session_id,
         consented: session.consented_at.is_some(),
         more: session.more,
         most_trials: if session.more { study.most_trials() } else { trials.len() },
