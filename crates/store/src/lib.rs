@@ -27,6 +27,8 @@ mod writer;
 pub use answers::{AnswerRow, Appended, NewAnswer, NextTrials, Progress, ShownStimulus, StoredAnswer};
 pub use chain::{ChainReport, Fault};
 pub use error::{StoreError, Trouble};
+pub use clock::micros;
+pub use error::StoreError;
 pub use files::sha256_hex;
 pub use first_chain::GENESIS;
 pub use import::ImportedSession;
