@@ -159,12 +159,12 @@ impl App {
     }
 }
 
-impl LoadedStudy {
-    /// How long a session may be silent and still hold its place.
-    pub(crate) fn idle(&self) -> Duration {
-        Duration::from_secs(60 * u64::from(self.study.idle_minutes))
-    }
+/// How long a session of a study may be silent and still hold its place.
+pub(crate) fn idle(study: &StudyDefinition) -> Duration {
+    Duration::from_secs(60 * u64::from(study.idle_minutes))
+}
 
+impl LoadedStudy {
     pub(crate) fn stimuli(&self) -> Stimuli {
         self.stimuli.read().unwrap_or_else(PoisonError::into_inner).clone()
     }

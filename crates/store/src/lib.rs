@@ -9,29 +9,35 @@ mod clock;
 mod error;
 mod files;
 mod first_chain;
+mod health;
 mod import;
 mod layout;
+mod lock;
 mod persons;
 mod pixels;
 mod plans;
+mod private;
 mod readers;
 mod reading;
 mod researchers;
 mod sessions;
+mod slots;
 mod sqlite;
 mod stimuli;
 mod upgrade;
 mod versions;
 mod writer;
 
-pub use answers::{AnswerRow, Appended, NewAnswer, NextTrials, Progress, ShownStimulus, StoredAnswer};
+pub use answers::{
+    AnswerRow, Appended, NewAnswer, NextTrials, Progress, SentAnswer, ShownStimulus, StoredAnswer, Taken,
+};
 pub use chain::{ChainReport, Fault};
-pub use error::{StoreError, Trouble};
 pub use clock::micros;
-pub use error::StoreError;
+pub use error::{StoreError, Trouble};
 pub use files::sha256_hex;
 pub use first_chain::GENESIS;
 pub use import::ImportedSession;
+pub use lock::FolderLock;
 pub use persons::Begun;
 pub use plans::{PlannedSession, PlannedTrial, StimulusHashes};
 pub use reading::StoredAnswers;

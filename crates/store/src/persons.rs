@@ -16,6 +16,8 @@ pub enum Begun {
     New(Session),
     /// The session that this person had goes on, with the new token in place of the old one.
     Again(Session),
+    /// The session that the same key began has gone on since.
+    KeyUsed,
     /// Nobody takes part twice, and this person has begun already.
     Refused {
         /// Whether that session is finished.
@@ -28,7 +30,7 @@ impl Begun {
     pub fn session(self) -> Option<Session> {
         match self {
             Begun::New(session) | Begun::Again(session) => Some(session),
-            Begun::Refused { .. } => None,
+            Begun::KeyUsed | Begun::Refused { .. } => None,
         }
     }
 }
@@ -40,6 +42,9 @@ const OF_PERSON: &str = "SELECT * FROM sessions WHERE study_id = ?1 AND subject_
 /// What the study's policy makes of somebody whose id has a session already; `None`: a new session begins, flagged where need be. In the
 /// transaction that begins it, so that two tabs at once are two visits of one person too.
 pub(crate) fn settle(writer: &Connection, new: &mut NewSession) -> Result<Option<Begun>, StoreError> {
+    if let Some(begun) = asked_again(writer, new)? {
+        return Ok(Some(begun));
+    }
     let Some(person) = new.subject_id.as_ref().filter(|_| new.kind == SessionKind::Participant) else {
         return Ok(None);
     };
@@ -57,6 +62,18 @@ pub(crate) fn settle(writer: &Connection, new: &mut NewSession) -> Result<Option
         Repeat::Resume if !is_finished => go_on(writer, known, new).map(Some),
         Repeat::Resume | Repeat::Refuse => Ok(Some(Begun::Refused { is_finished })),
     }
+}
+
+/// The session that the same wish began: whoever asks for it again has not heard of it, or of no consent to it.
+fn asked_again(writer: &Connection, new: &NewSession) -> Result<Option<Begun>, StoreError> {
+    let Some(key) = &new.start_key else { return Ok(None) };
+    let mut query = writer.prepare_cached("SELECT * FROM sessions WHERE study_id = ?1 AND start_key = ?2")?;
+    let mut known = query.query([&new.study_id, key])?;
+    let Some(known) = known.next()?.map(read_session).transpose()? else { return Ok(None) };
+    if known.consented_at.is_some() {
+        return Ok(Some(Begun::KeyUsed));
+    }
+    go_on(writer, known, new).map(Some)
 }
 
 fn go_on(writer: &Connection, mut known: Session, new: &NewSession) -> Result<Begun, StoreError> {

@@ -3,11 +3,11 @@
 use crate::clock;
 use crate::error::StoreError;
 use crate::persons::{Begun, settle};
-use crate::plans::{PlannedSession, insert_trials};
+use crate::plans::{PlannedSession, forget_trials, insert_trials};
+use crate::slots::Slots;
 use crate::sqlite::Store;
 use crate::writer::Refused;
 use kelir_study::Repeat;
-use kelir_study::plan::lowest_free_slot;
 use rusqlite::{Connection, params};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -175,21 +175,20 @@ impl Store {
         .await
     }
 
-    /// Notes that the participant agreed to the text of this hash; the first time counts.
+    /// Notes that the participant agreed to the text of this hash; the first time counts. Nothing has been shown before that: who was silent for
+    /// so long that somebody else has their slot gets a new one, with the plan that `plan` has for it.
     ///
     /// # Errors
-    /// The database fails.
-    pub async fn consent(&self, session_id: &str, consent_sha256: &str) -> Result<(), StoreError> {
-        let [session_id, consent_sha256] = [session_id, consent_sha256].map(str::to_owned);
-        self.write(move |writer| {
-            let mut consent = writer.prepare_cached(
-                "UPDATE sessions SET consent_sha256 = CASE WHEN consented_at IS NULL THEN ?3 ELSE consent_sha256 END,
-                 consented_at = COALESCE(consented_at, ?2), last_seen_at = ?2 WHERE session_id = ?1",
-            )?;
-            consent.execute(params![session_id, clock::now(), consent_sha256])?;
-            Ok(())
-        })
-        .await
+    /// The database fails or has no such session, or `plan` fails; nothing is stored.
+    pub async fn consent<E: From<StoreError> + Send + 'static>(
+        &self,
+        session: &Session,
+        consent_sha256: &str,
+        idle: Duration,
+        plan: impl FnOnce(u32) -> Result<PlannedSession, E> + Send + 'static,
+    ) -> Result<Session, E> {
+        let (session_id, consent_sha256) = (session.session_id.clone(), consent_sha256.to_owned());
+        self.write_or(move |writer| consent(writer, &session_id, &consent_sha256, idle, plan)).await
     }
 
     /// Indices of the trials that have an answer, ascending.
@@ -257,17 +256,14 @@ fn create<E>(
     if let Some(settled) = settle(writer, &mut new)? {
         return Ok(settled);
     }
-    let mut held = writer.prepare_cached(
-        "SELECT slot FROM sessions WHERE study_id = ?1 AND version = ?2 AND kind = 'participant'
-             AND (completed_at IS NOT NULL OR last_seen_at > ?3)",
-    )?;
-    let held = held
-        .query_map([&new.study_id, &new.version, &clock::before_now(new.idle)], |row| row.get(0))?
-        .collect::<Result<Vec<u32>, _>>()?;
-    let slot = lowest_free_slot(held);
+    let slots = Slots { writer, study_id: &new.study_id, version: &new.version, idle: new.idle };
+    let slot = slots.lowest_free()?;
     let planned = plan(slot).map_err(Refused::Caller)?;
-    let session_id = uuid::Uuid::now_v7().to_string();
     let now = clock::now();
+    if new.kind == SessionKind::Participant {
+        slots.take(slot, &now)?;
+    }
+    let session_id = uuid::Uuid::now_v7().to_string();
     let session = Session {
         subject_id: new.subject_id.unwrap_or_else(|| session_id.clone()),
         session_id,
@@ -296,6 +292,47 @@ fn create<E>(
     Ok(Begun::New(session))
 }
 
+fn consent<E>(
+    writer: &Connection,
+    session_id: &str,
+    consent_sha256: &str,
+    idle: Duration,
+    plan: impl FnOnce(u32) -> Result<PlannedSession, E>,
+) -> Result<Session, Refused<E>> {
+    let gone = || StoreError::corrupt("session", "there is none of this id");
+    let mut known = session(writer, session_id)?.ok_or_else(gone)?;
+    let now = clock::now();
+    if known.consented_at.is_none() {
+        let slots = Slots { writer, study_id: &known.study_id, version: &known.version, idle };
+        if known.kind == SessionKind::Participant && slots.is_held_beside(known.slot, session_id)? {
+            let slot = slots.lowest_free()?;
+            let planned = plan(slot).map_err(Refused::Caller)?;
+            slots.take(slot, &now)?;
+            forget_trials(writer, session_id)?;
+            insert_trials(writer, session_id, &planned.next.trials, &now, 0)?;
+            (known.slot, known.plan_seed, known.more) = (slot, planned.seed, planned.next.more);
+        }
+        known.consented_at = Some(now.clone());
+        known.consent_sha256 = Some(consent_sha256.to_owned());
+    }
+    known.last_seen_at = now;
+    let mut consent = writer.prepare_cached(
+        "UPDATE sessions SET slot = ?2, plan_seed = ?3, more = ?4, consented_at = ?5, consent_sha256 = ?6, last_seen_at = ?7
+         WHERE session_id = ?1",
+    )?;
+    let Session { slot, plan_seed, more, consented_at, consent_sha256, last_seen_at, .. } = &known;
+    consent.execute(params![
+        session_id,
+        slot,
+        plan_seed,
+        more,
+        consented_at,
+        consent_sha256,
+        last_seen_at
+    ])?;
+    Ok(known)
+}
+
 fn complete(writer: &Connection, session_id: &str, code: &str) -> Result<Completed, StoreError> {
     let answered = answered(writer, session_id)?;
     let mut plan = writer.prepare_cached(
@@ -315,7 +352,7 @@ fn complete(writer: &Connection, session_id: &str, code: &str) -> Result<Complet
 }
 
 /// Indices of the trials of a session that have an answer, ascending.
-fn answered(connection: &Connection, session_id: &str) -> Result<Vec<u32>, StoreError> {
+pub(crate) fn answered(connection: &Connection, session_id: &str) -> Result<Vec<u32>, StoreError> {
     let mut query = connection.prepare_cached(
         "SELECT trial_index FROM responses WHERE session_id = ?1
          UNION SELECT trial_index FROM answers WHERE session_id = ?1 ORDER BY trial_index",

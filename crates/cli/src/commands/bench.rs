@@ -9,6 +9,7 @@ use super::drawing::{Drawing, render_error};
 
 mod accuracy;
 mod frames;
+mod load;
 mod numerics;
 mod rows;
 
@@ -47,6 +48,9 @@ pub enum Command {
         #[arg(long, value_name = "FILE", conflicts_with = "stats")]
         json: Option<PathBuf>,
     },
+    /// Durable answers a second, against Express and better-sqlite3 that store the same rows; how long a thousand people wait; whether starts and
+    /// answers slow down as sessions gather.
+    Load(load::Args),
     /// How long judging a million answers takes, from the database to the researcher's page.
     Rows(rows::Args),
 }
@@ -61,6 +65,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Numerics { stats: true, .. } => numerics::statistics(),
         Command::Numerics { curves: true, json, .. } => numerics::curves(json.as_deref()),
         Command::Numerics { most, json, .. } => numerics::renderer(most, json.as_deref()),
+        Command::Load(args) => load::run(&args),
         Command::Rows(args) => rows::run(&args),
     }
 }

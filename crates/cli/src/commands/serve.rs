@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use kelir_server::{Handle, Making, RenderMaker, Server, ServerConfig, StartError};
+use kelir_store::FolderLock;
 
 use crate::output::print;
 use crate::{bad_input, progress};
@@ -32,6 +33,8 @@ pub fn run(args: Args) -> Result<()> {
 }
 
 async fn serve(args: Args) -> Result<()> {
+    // Held until this returns.
+    let _lock = FolderLock::take(&args.data, &format!("http://{}", args.listen))?;
     let bar = progress::bar(0, "stimuli");
     let config = ServerConfig {
         data: args.data,

@@ -14,6 +14,8 @@ use utoipa::ToSchema;
 pub(crate) const PROBLEM_JSON: &str = "application/problem+json";
 /// An answer names so many wrong fields and no more.
 const MOST_ERRORS: usize = 100;
+/// When to ask again where the disk or the database is the trouble.
+const RETRY_AFTER_S: u64 = 10;
 
 worded! {
     /// What kind of problem it is.
@@ -54,6 +56,9 @@ worded! {
         TooManyTries = "too_many_tries",
         /// Something is wrong on the server; its log has the reason.
         Internal = "internal",
+        /// The server cannot store or read just now: its disk is full, fails or may not be written to, or its database is locked or damaged;
+        /// `Retry-After` says when to ask again.
+        Unavailable = "unavailable",
         /// The study's images are still being made; `Retry-After` says when to ask again.
         NotReady = "not_ready",
         /// The study's images could not be made.
@@ -82,13 +87,15 @@ impl ProblemCode {
             ProblemCode::InvalidField => StatusCode::UNPROCESSABLE_ENTITY,
             ProblemCode::TooManyTries => StatusCode::TOO_MANY_REQUESTS,
             ProblemCode::Internal => StatusCode::INTERNAL_SERVER_ERROR,
-            ProblemCode::NotReady | ProblemCode::StimuliFailed => StatusCode::SERVICE_UNAVAILABLE,
+            ProblemCode::Unavailable | ProblemCode::NotReady | ProblemCode::StimuliFailed => {
+                StatusCode::SERVICE_UNAVAILABLE
+            }
         }
     }
 
     /// Whether answers of this code say in `Retry-After` when to ask again.
     pub fn says_when(self) -> bool {
-        matches!(self, ProblemCode::TooManyTries | ProblemCode::NotReady)
+        matches!(self, ProblemCode::TooManyTries | ProblemCode::Unavailable | ProblemCode::NotReady)
     }
 }
 
@@ -210,7 +217,10 @@ impl Problem {
 
 impl From<StoreError> for Box<Problem> {
     fn from(error: StoreError) -> Self {
-        Problem::internal(error)
+        let Some(trouble) = error.as_trouble() else { return Problem::internal(error) };
+        tracing::error!("{error}");
+        let detail = format!("{} Please try again shortly.", trouble.sentence());
+        Problem::new(ProblemCode::Unavailable, detail).retry_after(RETRY_AFTER_S)
     }
 }
 
@@ -230,5 +240,27 @@ impl IntoResponse for Problem {
 impl IntoResponse for Box<Problem> {
     fn into_response(self) -> Response {
         (*self).into_response()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kelir_store::Trouble;
+
+    #[test]
+    fn trouble_with_the_disk_is_told_as_such_and_passes() {
+        for trouble in [Trouble::Full, Trouble::Locked, Trouble::ReadOnly, Trouble::Failing, Trouble::Damaged]
+        {
+            let error = StoreError::Trouble { trouble, message: "a path of the server".to_owned() };
+            let problem = Box::<Problem>::from(error);
+            assert!(problem.detail.starts_with(trouble.sentence()), "{}", problem.detail);
+            assert!(!problem.detail.contains("path"), "{}", problem.detail);
+            let response = problem.into_response();
+            assert_eq!(response.status(), StatusCode::SERVICE_UNAVAILABLE);
+            assert_eq!(response.headers()[header::RETRY_AFTER], "10");
+        }
+        let other = Box::<Problem>::from(StoreError::Migrate("x".to_owned()));
+        assert_eq!(other.into_response().status(), StatusCode::INTERNAL_SERVER_ERROR);
     }
 }

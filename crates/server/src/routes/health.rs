@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 refusals!(Health:);
 
-/// Whether the server answers and its database can be read.
+/// Whether the server answers and can store: something is written, synced and taken away again.
 #[utoipa::path(get, path = "/healthz", tag = "about", responses((status = OK, description = "`ok`", body = String), Health))]
 pub(crate) async fn get_health(State(app): State<Arc<App>>) -> Result<Response, Box<Problem>> {
-    app.store.ping().await?;
+    app.store.check().await?;
     Ok(([(header::CACHE_CONTROL, "no-store")], "ok\n").into_response())
 }
