@@ -56,8 +56,7 @@ worded! {
         TooManyTries = "too_many_tries",
         /// Something is wrong on the server; its log has the reason.
         Internal = "internal",
-        /// The server cannot store or read just now: its disk is full, fails or may not be written to, or its database is locked or damaged;
-        /// `Retry-After` says when to ask again.
+        /// The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again.
         Unavailable = "unavailable",
         /// The study's images are still being made; `Retry-After` says when to ask again.
         NotReady = "not_ready",

@@ -101,6 +101,12 @@ mod injected {
         if fails(&FAILED_WRITES) { -1 } else { unsafe { libc::write(fd, bytes, n) } }
     }
 
+    /// What it calls in place of pwrite(2), as it does where it is built so.
+    unsafe extern "C" fn pwrite(fd: c_int, bytes: *const c_void, n: usize, at: libc::off64_t) -> isize {
+        // SAFETY: SQLite's own arguments are passed on.
+        if fails(&FAILED_WRITES) { -1 } else { unsafe { libc::pwrite64(fd, bytes, n, at) } }
+    }
+
     /// Stands before libc's in this test program, where SQLite is linked into.
     #[unsafe(no_mangle)]
     extern "C" fn fdatasync(fd: c_int) -> c_int {
@@ -116,13 +122,20 @@ mod injected {
     }
 
     fn intercept_writes() {
-        // SAFETY: SQLite's documented way to stand before its system calls, done before any database is open; the function has the type that
-        // SQLite calls.
-        unsafe {
-            let vfs = ffi::sqlite3_vfs_find(std::ptr::null());
-            let set = (*vfs).xSetSystemCall.unwrap();
-            let call = std::mem::transmute::<*const c_void, unsafe extern "C" fn()>(write as *const c_void);
-            assert_eq!(set(vfs, c"write".as_ptr(), Some(call)), ffi::SQLITE_OK);
+        let calls = [
+            (c"write", write as *const c_void),
+            (c"pwrite", pwrite as *const c_void),
+            (c"pwrite64", pwrite as *const c_void),
+        ];
+        for (name, call) in calls {
+            // SAFETY: SQLite's documented way to stand before its system calls, done before any database is open; each function has the type
+            // that SQLite calls.
+            unsafe {
+                let vfs = ffi::sqlite3_vfs_find(std::ptr::null());
+                let set = (*vfs).xSetSystemCall.unwrap();
+                let call = std::mem::transmute::<*const c_void, unsafe extern "C" fn()>(call);
+                assert_eq!(set(vfs, name.as_ptr(), Some(call)), ffi::SQLITE_OK);
+            }
         }
     }
 
