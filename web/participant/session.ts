@@ -158,7 +158,10 @@ export class Session {
       this.#again.add(index);
       this.outbox.discard(index);
     }
-    if (again.length > 0) say("trial", words("answer-again"));
+    if (again.length > 0) {
+      say("answers", null);
+      say("trial", words("answer-again"));
+    }
     return again.length > 0;
   }
 

@@ -26,8 +26,9 @@ test("who comes to a study that was begun is asked, and may go on or be someone 
   await v.hook("start").click();
   await position(v.page, 0);
   assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"]], []], "what the first one left unsent is the first one's");
+  await answer(v, 0, 1);
   await v.page.reload();
-  await position(v.page, 0);
+  await position(v.page, 1);
 });
 
 test("a code is shown to who reloads or comes by a link of one's own, and to nobody else", async (t) => {
