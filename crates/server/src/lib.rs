@@ -5,6 +5,7 @@
 
 pub mod api;
 mod app;
+mod check;
 mod error;
 mod export;
 mod extract;
@@ -19,12 +20,14 @@ pub mod results;
 mod routes;
 mod selection;
 mod server;
+pub mod shipped;
 mod viewer;
 mod web;
 
+pub use check::check_study;
 pub use error::{StartError, StudyFileError};
 pub use export::{codebook_csv, responses_csv};
-pub use library::{Library, check_study};
+pub use library::Library;
 pub use making::{Made, Maker, Making, Task};
 pub use render::RenderMaker;
 pub use routes::openapi_json;
