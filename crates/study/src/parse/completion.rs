@@ -45,9 +45,9 @@ fn broken(address: &str, code: Option<&str>, session: Option<&SessionRules>) -> 
             return rules;
         }
     };
-    let own = session.map_or(&[][..], |session| &session.params);
+    let own = session.map(|session| session.params.iter().chain(&session.id)).into_iter().flatten();
     let known: Vec<&str> =
-        std::iter::once("CODE").chain(PANEL_PARAMS).chain(own.iter().map(String::as_str)).collect();
+        std::iter::once("CODE").chain(PANEL_PARAMS).chain(own.map(String::as_str)).collect();
     for name in &placeholders {
         // Which parameters a link has is known for certain only of those that are listed.
         if session.is_some() && !known.contains(name) {
