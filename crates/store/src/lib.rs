@@ -28,6 +28,7 @@ pub use error::StoreError;
 pub use files::sha256_hex;
 pub use first_chain::GENESIS;
 pub use import::ImportedSession;
+pub use pixels::picture_size;
 pub use persons::Begun;
 pub use plans::{PlannedSession, PlannedTrial, StimulusHashes};
 pub use reading::StoredAnswers;
