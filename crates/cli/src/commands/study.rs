@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
+use kelir_server::links::{Links, Visit, now};
 use kelir_server::shipped::{Shipped, is_file};
 use kelir_server::{Library, StudyFileError, check_study, results};
 use kelir_study::Problem;
@@ -10,6 +11,7 @@ use serde_json::json;
 
 use super::checked::Checked;
 use super::stored::{block_on, results_error};
+use crate::bad_input;
 use crate::output::{Format, Printed, csv, print, print_json, table};
 
 /// Subcommands of `kelir study`.
@@ -21,6 +23,26 @@ pub enum Command {
         /// Study files (TOML), or names of studies that ship.
         #[arg(required = true)]
         files: Vec<PathBuf>,
+        /// Print one JSON document.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Make a signed link by which who has it tries a study, as the console's buttons do.
+    Link {
+        /// Id of the study, as in its address.
+        study: String,
+        /// What it is for.
+        #[arg(long, value_enum, default_value = "pilot")]
+        kind: LinkKind,
+        /// For how many days it is good.
+        #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=90))]
+        days: u32,
+        /// The server's data folder; it may be running.
+        #[arg(long, default_value = "data")]
+        data: PathBuf,
+        /// The server's address, as people see it.
+        #[arg(long, default_value = "http://127.0.0.1:8080")]
+        base: String,
         /// Print one JSON document.
         #[arg(long)]
         json: bool,
@@ -37,12 +59,45 @@ pub enum Command {
     },
 }
 
+/// What a link is for.
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub enum LinkKind {
+    /// Stored, counted apart, left out of every analysis.
+    Pilot,
+    /// Nothing is stored.
+    Preview,
+}
+
 /// Runs the command.
 pub fn run(command: Command) -> Result<()> {
     match command {
         Command::Check { files, json } => check(&files, json),
+        Command::Link { study, kind, days, data, base, json } => {
+            let (path, expires_at_s) = link(&study, kind, days, &data)?;
+            let url = format!("{}{path}", base.trim_end_matches('/'));
+            if json { print_json(&json!({ "url": url, "expires_at_s": expires_at_s })) } else { print(&url) }
+        }
         Command::Versions { study, data, printed } => versions(&study, &data, printed.form()),
     }
+}
+
+/// Path of a link and when it ends, seconds since 1970.
+fn link(study: &str, kind: LinkKind, days: u32, data: &Path) -> Result<(String, u64)> {
+    if !data.is_dir() {
+        return Err(bad_input(format!("data = {}: there is no such folder", data.display())));
+    }
+    let files = Library::new(data).study_files();
+    let ids: Vec<&str> =
+        files.iter().filter_map(|path| path.strip_prefix("studies/")?.strip_suffix(".toml")).collect();
+    if !ids.contains(&study) {
+        return Err(bad_input(format!("study = {study}: must be one of {}", ids.join(", "))));
+    }
+    let visit = match kind {
+        LinkKind::Pilot => Visit::Pilot,
+        LinkKind::Preview => Visit::Preview,
+    };
+    let expires = now() + 86_400 * u64::from(days);
+    Ok((Links::open(data)?.link(study, visit, expires), expires))
 }
 
 fn versions(study: &str, data: &Path, format: Format) -> Result<()> {
