@@ -11,7 +11,7 @@ import type { Session } from "./session.ts";
 import { openLoader, type Pictures, Unusable } from "./stimuli.ts";
 import TextPage, { showPage } from "./text-page.ts";
 import { loadKind, UnknownKind } from "./trials/kinds.ts";
-import type { TrialModule } from "./trials/module.ts";
+import { rulesOf, type TrialModule } from "./trials/module.ts";
 
 type TimelineArray = Extract<Parameters<JsPsych["run"]>[0], unknown[]>;
 /** jsPsych's description of one page or trial. */
@@ -70,6 +70,7 @@ export class Visit {
       content: () => consentContent(this.#study),
       button: "I agree and take part",
       testid: "consent-agree",
+      rules: rulesOf(this.#study),
       action: () => this.#session.consent(),
       on_load: noTabStop,
       on_finish,
@@ -84,6 +85,7 @@ export class Visit {
       content: () => instructionsContent(this.#study, kinds.map((kind) => kind.legend)),
       button: "Start",
       testid: "start",
+      rules: rulesOf(this.#study),
       on_load: () => {
         noTabStop();
         void this.#measure();

@@ -47,6 +47,8 @@ export interface Options {
   stuff?: Material;
   /** An adaptive plan: so many trials are decided at the start, one more with each answer, and `most` is promised. */
   grow?: { start: number; most: number } | null;
+  /** When an answer counts. */
+  response?: Study["response"];
 }
 
 export const problem = (status: number, code: Schemas["ProblemCode"], detail: string, more: Partial<Schemas["Problem"]> = {}): Reply => {
@@ -54,12 +56,12 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response }: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string }> = [];
   let researcher = false;
 
-  const found = (): Study => ({ ...study, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
+  const found = (): Study => ({ ...study, response, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
     return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));

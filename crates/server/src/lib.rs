@@ -23,7 +23,7 @@ mod viewer;
 mod web;
 
 pub use error::{StartError, StudyFileError};
-pub use export::{codebook_csv, responses_csv};
+pub use export::{codebook_csv, events_codebook_csv, events_csv, responses_csv};
 pub use library::{Library, check_study};
 pub use making::{Made, Maker, Making, Task};
 pub use render::RenderMaker;

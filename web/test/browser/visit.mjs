@@ -11,6 +11,8 @@ import { material, study } from "../mock-study.ts";
 import { launch, sizes } from "./chromium.mjs";
 
 const dist = mkdtempSync(join(tmpdir(), "kelir-web-"));
+/** Where the bundle that the tests build is. */
+export const bundle = dist;
 let browser;
 before(async () => {
   execFileSync("node", ["build.mjs", dist]);

@@ -3,7 +3,7 @@
 use super::{Answered, Fresh};
 use crate::api::{Codebook, Pooling, Problem, refusals, version_ref};
 use crate::app::App;
-use crate::export::{codebook_csv, responses_csv};
+use crate::export::{codebook_csv, events_codebook_csv, events_csv, responses_csv};
 use crate::extract::{Parameters, Query, Researcher};
 use crate::results::{StudyResults, pairs_csv, report_of, results_of};
 use crate::selection::Selection;
@@ -147,6 +147,39 @@ pub(crate) async fn get_pairs_csv(
     let selection = chosen(&app, &path, &pooling).await?;
     let table = pairs_csv(&app.store, &selection).await?;
     Ok(csv(&format!("{}-pairs.csv", path.study), table))
+}
+
+/// One row for each thing that happened to a page while a trial was taken: lost focus, a resize, an input that did not count.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/events.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_events_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let selection = chosen(&app, &path, &pooling).await?;
+    let table = events_csv(&app.store, &selection).await?;
+    Ok(csv(&format!("{}-events.csv", path.study), table))
+}
+
+/// What each column of `events.csv` is, as a table.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/events-codebook.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_events_codebook_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    chosen(&app, &path, &pooling).await?;
+    Ok(csv(&format!("{}-events-codebook.csv", path.study), events_codebook_csv()))
 }
 
 /// What each column of `responses.csv` is, as a table.
