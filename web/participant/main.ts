@@ -3,15 +3,17 @@ import { Refused } from "../shared/http.ts";
 import * as api from "./api.ts";
 import { inkOn, srgbCode } from "./layout.ts";
 import { notice, persist } from "./notice.ts";
-import { action, askToTakeOver, display, Ended, KEPT, lastPage } from "./pages.ts";
+import { action, askToTakeOver, display, Ended, lastPage } from "./pages.ts";
 import { Session } from "./session.ts";
 import { Unusable } from "./stimuli.ts";
 import { openStore, sessionKey } from "./storage.ts";
 import { openTabs } from "./tabs.ts";
 import { Visit } from "./visit.ts";
+import { speak, spoken, words } from "./words/index.ts";
 import "./style.css";
 
 document.body.append(display, notice);
+speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
 /** What the link says of the participant, within what the server takes. */
@@ -24,7 +26,7 @@ async function start(): Promise<void> {
   let session: Session | null = null;
   const tabs = openTabs(key, () => {
     session?.stop();
-    lastPage("Continued in another tab", ["You went on with this study in another tab or window. You can close this one."]);
+    lastPage(words("moved-title"), [words("moved")]);
   });
   let study: api.Study;
   let elsewhere: boolean;
@@ -32,7 +34,7 @@ async function start(): Promise<void> {
     [study, elsewhere] = await Promise.all([persist(() => api.fetchStudy(studyId)), tabs.taken()]);
   } catch (error) {
     if (!(error instanceof Refused) || error.status !== 404) throw error;
-    return lastPage("There is no such study", ["Please check the link you were given, or ask the person who sent it to you."]);
+    return lastPage(words("no-study-title"), [words("no-study")]);
   }
   document.title = study.title;
   dress(study.surround);
@@ -59,8 +61,8 @@ function dress(surround: number): void {
 
 start().catch((error: unknown) => {
   console.error(error);
-  const again = action("Reload the page", () => location.reload());
+  const again = action(words("reload"), () => location.reload());
   if (error instanceof Ended) return lastPage(error.heading, error.texts, again);
-  const known = error instanceof Refused || error instanceof Unusable ? error.message : "Something in this page went wrong.";
-  lastPage("The study has stopped", [`${known} ${KEPT}`], again);
+  const known = error instanceof Refused || error instanceof Unusable ? error.message : words("stopped");
+  lastPage(words("stopped-title"), [`${known} ${words("kept")}`], again);
 });

@@ -2,6 +2,7 @@
 import { backoffMs, pause } from "../shared/backoff.ts";
 import { h } from "../shared/dom.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
+import { words } from "./words/index.ts";
 
 export const notice = h("p", { id: "notice", role: "status" });
 
@@ -33,7 +34,8 @@ export async function persist<T>(ask: () => Promise<T>): Promise<T> {
 
 /** What keeps us waiting, in words that are true of it. */
 function hindrance(error: unknown): string {
-  if (!(error instanceof Refused)) return "No connection. Nothing is lost: this page goes on by itself when it is back.";
-  if (error.code === "not_ready" || error.code === "stimuli_failed") return error.message;
-  return "The server is busy. Nothing is lost: this page goes on by itself in a moment.";
+  if (!(error instanceof Refused)) return words("line-down");
+  if (error.code === "not_ready") return words("not-ready");
+  if (error.code === "stimuli_failed") return words("stimuli-failed");
+  return words("server-busy");
 }

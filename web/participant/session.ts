@@ -7,6 +7,7 @@ import { persist, say } from "./notice.ts";
 import { Outbox } from "./outbox.ts";
 import { remaining, withAnswered } from "./plan.ts";
 import type { Store } from "./storage.ts";
+import { words } from "./words/index.ts";
 
 /** What a browser remembers of a session. */
 interface Remembered extends api.Credentials {
@@ -161,11 +162,10 @@ export class Session {
         this.state = { ...this.state, trials, more: acknowledged?.more ?? this.state.more };
       },
       onLine: (line) => {
-        const goOn = this.#waiting ? "this page goes on by itself when it is back" : "you can go on";
-        const kept = this.#store.durable ? `Your answers are kept here and sent later; ${goOn}.` : `Please keep this page open; your answers are sent later${this.#waiting ? `, and ${goOn}` : ""}.`;
-        const refused = `An answer could not be stored yet. It is kept here${this.#waiting ? "" : "; you can go on"}.`;
+        const kept = this.#store.durable ? (this.#waiting ? "answers-kept-waiting" : "answers-kept") : this.#waiting ? "answers-held-waiting" : "answers-held";
+        const refused = this.#waiting ? "answers-refused-waiting" : "answers-refused";
         // While a retry is under way the sentence stays: it would flicker otherwise.
-        if (line !== "sending") say("answers", line === "waiting" ? `No connection. ${kept}` : line === "refused" ? refused : null);
+        if (line !== "sending") say("answers", line === "waiting" ? words(kept) : line === "refused" ? words(refused) : null);
       },
     });
   }

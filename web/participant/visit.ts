@@ -5,13 +5,14 @@ import { Refused } from "../shared/http.ts";
 import type { Study, Trial } from "./api.ts";
 import { measureRefresh } from "./display.ts";
 import { say } from "./notice.ts";
-import { askAgain, consentContent, display, Ended, instructionsContent, KEPT, showThanks } from "./pages.ts";
+import { askAgain, consentContent, display, Ended, instructionsContent, showThanks } from "./pages.ts";
 import { position } from "./plan.ts";
 import type { Session } from "./session.ts";
 import { openLoader, type Pictures, Unusable } from "./stimuli.ts";
 import TextPage, { showPage } from "./text-page.ts";
 import { loadKind, UnknownKind } from "./trials/kinds.ts";
 import { rulesOf, type TrialModule } from "./trials/module.ts";
+import { words } from "./words/index.ts";
 
 type TimelineArray = Extract<Parameters<JsPsych["run"]>[0], unknown[]>;
 /** jsPsych's description of one page or trial. */
@@ -25,7 +26,7 @@ export class Visit {
   readonly #session: Session;
   readonly #jsPsych = initJsPsych({ display_element: display });
   readonly #loader = openLoader((waiting) =>
-    say("pictures", waiting ? "The pictures take longer to arrive. Nothing is lost; it goes on by itself." : null),
+    say("pictures", waiting ? words("pictures-slow") : null),
   );
   #refresh: Promise<number | null> | null = null;
   #instructed = false;
@@ -68,7 +69,7 @@ export class Visit {
       type: TextPage,
       heading: this.#study.title,
       content: () => consentContent(this.#study),
-      button: "I agree and take part",
+      button: words("consent-agree"),
       testid: "consent-agree",
       rules: rulesOf(this.#study),
       action: () => this.#session.consent(),
@@ -81,9 +82,9 @@ export class Visit {
     this.#instructed = true;
     return {
       type: TextPage,
-      heading: "How it works",
+      heading: words("instructions-title"),
       content: () => instructionsContent(this.#study, kinds.map((kind) => kind.legend)),
-      button: "Start",
+      button: words("instructions-start"),
       testid: "start",
       rules: rulesOf(this.#study),
       on_load: () => {
@@ -129,9 +130,9 @@ export class Visit {
     const ahead = await Promise.all(this.#session.remaining.map(async (trial) => ({ trial, kind: await kindOf(trial.trial) })));
     for (const { trial, kind } of ahead) {
       const missing = kind.roles.find((role) => trial.shown[role] === undefined);
-      if (missing !== undefined) throw new Unusable(`Trial ${trial.trial_index} of the plan has no ${missing} stimulus.`);
+      if (missing !== undefined) throw new Unusable(words("picture-missing"));
       const why = kind.refusal?.(trial, await this.#measure()) ?? null;
-      if (why !== null) throw new Ended("This display can't show the next pictures", [why, `Please open the link you were given in another browser or on another device. ${KEPT}`]);
+      if (why !== null) throw new Ended(words("display-title"), [why, `${words("display-other")} ${words("kept")}`]);
     }
     return kindOf(trial.trial);
   }
@@ -140,7 +141,7 @@ export class Visit {
   async #decided(): Promise<Trial | null> {
     if (this.#session.state?.more !== true) return null;
     const screen = this.#jsPsych.getDisplayElement() ?? cleared();
-    const waiting: Patience = { screen, heading: "One moment", sentence: "The next pictures depend on your answers: they come once these are stored." };
+    const waiting: Patience = { screen, heading: words("deciding-title"), sentence: words("deciding") };
     await this.#stored(waiting);
     await patiently(waiting, this.#session.grown());
     screen.replaceChildren();
@@ -160,7 +161,7 @@ export class Visit {
 
   /** A trial's pictures; says so when they are long in coming, for the screen is empty until then. */
   async #load(trial: Trial): Promise<Pictures> {
-    const slow = setTimeout(() => say("pictures", "The next pictures are on their way; please wait a moment."), 1000);
+    const slow = setTimeout(() => say("pictures", words("pictures-coming")), 1000);
     try {
       return await this.#loader.load(trial);
     } finally {
@@ -176,7 +177,7 @@ export class Visit {
   /** Waits until every answer is stored, then asks for the code: it exists only then. */
   async #finish(): Promise<void> {
     const screen = cleared();
-    const waiting: Patience = { screen, heading: "Almost done", sentence: "The study ends once your last answers are stored." };
+    const waiting: Patience = { screen, heading: words("finishing-title"), sentence: words("finishing") };
     try {
       await this.#stored(waiting);
       showThanks(screen, this.#study, await patiently(waiting, this.#session.complete()));
@@ -220,7 +221,7 @@ async function kindOf(kind: string): Promise<TrialModule> {
     return await loadKind(kind);
   } catch (error) {
     if (!(error instanceof UnknownKind)) throw error;
-    throw new Ended("Please reload this page", ["This study has been updated since this page was loaded, and the page can't show its next pictures.", KEPT], error);
+    throw new Ended(words("updated-title"), [words("updated"), words("kept")], error);
   }
 }
 
