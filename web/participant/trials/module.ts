@@ -10,8 +10,8 @@ export interface TrialModule {
   readonly plugin: (new (jsPsych: JsPsych) => JsPsychPlugin<never>) & { readonly info: PluginInfo };
   /** The names of its stimuli in a trial's `shown`. */
   readonly roles: readonly string[];
-  /** What the page of instructions shows of it. */
-  readonly legend: Legend;
+  /** What the page of instructions shows of it; of a study where that depends on how its pictures would stand now. */
+  readonly legend: Legend | ((study: Study) => Legend);
   /** The plugin's parameters for one trial. */
   parameters(given: Given): Record<string, unknown>;
   /** Why a display that redraws every `periodMs` (null: not known) can't show the trial as it is asked for; null where it can. */
@@ -22,6 +22,10 @@ export interface TrialModule {
 export interface Legend {
   /** Said only where a study has several kinds of trial. */
   title: Plain;
+  /** How an answer is given with a finger alone, and with a mouse and keys. */
+  how?: { touch: Plain; click: Plain };
+  /** Whether the answers stand below each other. */
+  stacked?: boolean;
   /** The keys of each answer, in the order in which they lie on the keyboard. */
   answers: ReadonlyArray<{ keys: readonly string[]; label: Plain }>;
 }
