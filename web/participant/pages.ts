@@ -1,6 +1,7 @@
 /** The pages of text: what they say, and what can be done there. */
 import { h, paragraphs } from "../shared/dom.ts";
 import type { Completion, Study } from "./api.ts";
+import { copied } from "./copy.ts";
 import { legendsContent } from "./legend.ts";
 import { showPage } from "./text-page.ts";
 import type { TrialModule } from "./trials/module.ts";
@@ -52,7 +53,7 @@ export function instructionsContent(study: Study, legends: readonly TrialModule[
 
 /** The last page of a visit that came to its end. */
 export function showThanks(screen: HTMLElement, { texts }: Study, { completion_code, redirect }: Completion): void {
-  const code = h("output", { class: "code", "data-testid": "completion-code", "aria-label": words("code-label") }, completion_code);
+  const code = h("output", { class: "code", translate: "no", "data-testid": "completion-code", "aria-label": words("code-label") }, completion_code);
   const target = safeRedirect(redirect);
   const action =
     target !== null
@@ -74,27 +75,20 @@ export function askAgain(screen: HTMLElement, refused: readonly string[], sessio
   return new Promise((resolve) => showPage(screen, words("missing-title"), content, action(words("try-again"), resolve)));
 }
 
-/** Asks whether to go on here, where another tab has the study open. */
-export function askToTakeOver(): Promise<void> {
-  return new Promise((resolve) => {
-    lastPage(words("elsewhere-title"), [words("elsewhere")], action(words("elsewhere-continue"), resolve));
-  });
-}
-
 function copyButton(text: string): HTMLButtonElement {
   const button = h("button", { type: "button", class: "action" }, words("code-copy"));
-  button.addEventListener("click", () => {
-    void navigator.clipboard?.writeText(text).then(
-      () => (button.textContent = words("code-copied")),
-      () => (button.textContent = words("code-select")),
-    );
+  button.addEventListener("click", async () => {
+    button.textContent = words((await copied(text)) ? "code-copied" : "code-select");
   });
   return button;
 }
 
 /** A panel's return address, if it is a web address at all. */
 function safeRedirect(redirect: string | null | undefined): URL | null {
-  if (redirect === null || redirect === undefined || !URL.canParse(redirect)) return null;
-  const url = new URL(redirect);
-  return url.protocol === "https:" || url.protocol === "http:" ? url : null;
+  try {
+    const url = new URL(redirect ?? "");
+    return url.protocol === "https:" || url.protocol === "http:" ? url : null;
+  } catch {
+    return null;
+  }
 }

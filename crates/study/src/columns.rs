@@ -2,8 +2,10 @@
 //! the codebook, the header and the cells are made from these.
 
 mod events;
+mod participants;
 
 pub use events::{event_rows, events_codebook};
+pub use participants::{ParticipantColumns, participants_codebook};
 
 use crate::definition::{Block, Kind, StudyDefinition};
 use crate::plan::Trial;
@@ -48,6 +50,10 @@ pub struct SessionColumns {
     pub slot: u32,
     /// Seed of the session's trial plan.
     pub plan_seed: String,
+    /// 1 where the analysis counts the session's answers; else 0.
+    pub judged: u8,
+    /// Why it does not, where it has a reason.
+    pub reject_reason: Option<String>,
 }
 
 /// What a row says of its trial and answer, beside what the page sent.
