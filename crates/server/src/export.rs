@@ -1,11 +1,8 @@
 //! Answers as a table: one tidy row a trial, and a codebook that says what each column is.
 
 use crate::selection::Selection;
-use kelir_store::{AnswerRow, PlannedTrial, Store, StoreError, sha256_hex};
-use kelir_study::columns::{
-    Answered, Rows, SessionColumns, SessionStatus, codebook, event_rows, events_codebook,
-};
-use kelir_study::schema::Column;
+use kelir_store::{PlannedTrial, Store, StoreError, sha256_hex};
+use kelir_study::columns::{Answered, Rows, SessionColumns, SessionStatus, codebook};
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -15,11 +12,11 @@ struct Taken {
     trials: Vec<PlannedTrial>,
 }
 
-/// The answers of the chosen versions in the order they came, and the sessions that gave them, by id.
-async fn taken(
-    store: &Store,
-    selection: &Selection,
-) -> Result<(Vec<AnswerRow>, HashMap<String, Taken>), StoreError> {
+/// One row for each answer to the chosen versions, in the order they came.
+///
+/// # Errors
+/// The store cannot be read.
+pub async fn responses_csv(store: &Store, selection: &Selection) -> Result<String, StoreError> {
     let study = &selection.study;
     let rows = store.answer_rows(&study.id, &selection.versions).await?;
     let mut answered: HashMap<&str, usize> = HashMap::new();
@@ -49,16 +46,6 @@ async fn taken(
         };
         sessions.insert(session.session_id, Taken { columns, trials });
     }
-    Ok((rows, sessions))
-}
-
-/// One row for each answer to the chosen versions, in the order they came.
-///
-/// # Errors
-/// The store cannot be read.
-pub async fn responses_csv(store: &Store, selection: &Selection) -> Result<String, StoreError> {
-    let study = &selection.study;
-    let (rows, sessions) = taken(store, selection).await?;
     let table = Rows::default();
     let mut out = String::new();
     write_row(&mut out, table.names().to_vec());
@@ -85,45 +72,17 @@ pub async fn responses_csv(store: &Store, selection: &Selection) -> Result<Strin
     Ok(out)
 }
 
-/// One row for each thing that happened to a page while a trial of the chosen versions was taken, in the order of the answers.
-///
-/// # Errors
-/// The store cannot be read.
-pub async fn events_csv(store: &Store, selection: &Selection) -> Result<String, StoreError> {
-    let (rows, sessions) = taken(store, selection).await?;
-    let mut out = String::new();
-    write_row(&mut out, events_codebook().into_iter().map(|column| column.name));
-    for row in &rows {
-        let Some(taken) = sessions.get(&row.session_id) else { continue };
-        let Some(planned) = taken.trials.get(row.trial_index as usize) else { continue };
-        let payload = row.payload.as_deref().and_then(|payload| serde_json::from_str(payload).ok());
-        for cells in event_rows(&taken.columns, &planned.trial, &payload.unwrap_or(Value::Null)) {
-            write_row(&mut out, cells);
-        }
-    }
-    Ok(out)
-}
-
 /// Hash of the design of each version.
 async fn designs(store: &Store, study_id: &str) -> Result<HashMap<String, String>, StoreError> {
     let versions = store.study_versions(study_id).await?;
     Ok(versions.into_iter().map(|version| (version.version, version.design_hash)).collect())
 }
 
-/// The codebook of the responses: `column,type,unit,meaning,values`.
+/// The codebook: `column,type,unit,meaning,values`.
 pub fn codebook_csv() -> String {
-    explained(codebook())
-}
-
-/// The codebook of the events, in the same form.
-pub fn events_codebook_csv() -> String {
-    explained(events_codebook())
-}
-
-fn explained(columns: Vec<Column>) -> String {
     let mut out = String::new();
     write_row(&mut out, ["column", "type", "unit", "meaning", "values"].map(str::to_owned));
-    for column in columns {
+    for column in codebook() {
         let values: Vec<String> =
             column.values.iter().map(|v| format!("{}: {}", v.value, v.meaning)).collect();
         write_row(&mut out, [column.name, column.kind, column.unit, column.meaning, values.join("; ")]);

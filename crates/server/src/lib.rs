@@ -6,6 +6,7 @@
 pub mod api;
 mod app;
 mod error;
+mod events;
 mod export;
 mod extract;
 mod headers;
@@ -23,7 +24,8 @@ mod viewer;
 mod web;
 
 pub use error::{StartError, StudyFileError};
-pub use export::{codebook_csv, events_codebook_csv, events_csv, responses_csv};
+pub use events::{events_codebook_csv, events_csv};
+pub use export::{codebook_csv, responses_csv};
 pub use library::{Library, check_study};
 pub use making::{Made, Maker, Making, Task};
 pub use render::RenderMaker;

@@ -4,7 +4,7 @@
 mod events;
 mod participants;
 
-pub use events::{event_rows, events_codebook};
+pub use events::{EventSession, event_rows, events_codebook};
 pub use participants::{ParticipantColumns, participants_codebook};
 
 use crate::definition::{Block, Kind, StudyDefinition};

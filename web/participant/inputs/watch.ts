@@ -33,7 +33,7 @@ export class Inputs {
   #pressing: { press: Press; until: number } | null = null;
 
   /** Follows all inputs of a window. */
-  watch(view: Window): void {
+  follow(view: Window): void {
     const on = <K extends keyof WindowEventMap>(type: K, hear: (event: WindowEventMap[K]) => void) =>
       view.addEventListener(type, (event) => event.isTrusted && hear(event), { capture: true });
     on("keydown", (event) => this.#keyDown(event));
@@ -131,4 +131,4 @@ const inputOf = (type: string): Input => (type === "touch" || type === "pen" ? t
 
 /** The page's own. */
 export const inputs = new Inputs();
-if (typeof window !== "undefined") inputs.watch(window);
+if (typeof window !== "undefined") inputs.follow(window);

@@ -64,7 +64,7 @@ test("a kind that the page doesn't know: it says so before anything is asked, or
 test("a kind is added by its folder, and by nothing else", async (t) => {
   const web = mkdtempSync(join(tmpdir(), "kelir-kind-"));
   t.after(() => rmSync(web, { recursive: true }));
-  for (const part of ["participant", "console", "shared", "build.mjs", "package.json"]) cpSync(part, join(web, part), { recursive: true });
+  for (const part of ["participant", "console", "shared", "build.mjs", "browsers.json", "package.json"]) cpSync(part, join(web, part), { recursive: true });
   symlinkSync(resolve("node_modules"), join(web, "node_modules"));
   mkdirSync(join(web, "participant/trials/added"));
   const legend = '{ title: "Added", answers: [{ keys: ["←"], label: "this" }, { keys: ["→"], label: "that" }] }';

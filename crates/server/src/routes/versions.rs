@@ -3,7 +3,8 @@
 use super::{Answered, Fresh};
 use crate::api::{Codebook, Pooling, Problem, refusals, version_ref};
 use crate::app::App;
-use crate::export::{codebook_csv, events_codebook_csv, events_csv, responses_csv};
+use crate::events::{events_codebook_csv, events_csv};
+use crate::export::{codebook_csv, responses_csv};
 use crate::extract::{Parameters, Query, Researcher};
 use crate::results::{StudyResults, pairs_csv, report_of, results_of};
 use crate::selection::Selection;

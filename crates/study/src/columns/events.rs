@@ -1,12 +1,24 @@
 //! The table of events: one row for each thing that happened to a page while a trial was taken.
 
-use super::{SessionColumns, plain};
+use super::plain;
 use crate::plan::Trial;
 use crate::schema::{Column, Record};
 use crate::trials::{TrialEvent, TrialName};
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
+
+/// The session that events belong to.
+pub struct EventSession<'a> {
+    /// Participant.
+    pub subject_id: &'a str,
+    /// Session.
+    pub session_id: &'a str,
+    /// Study.
+    pub study_id: &'a str,
+    /// Version of the study.
+    pub version: &'a str,
+}
 
 /// What a row says of where its event belongs.
 #[derive(Serialize, ToSchema)]
@@ -45,15 +57,16 @@ pub fn events_codebook() -> Vec<Column> {
 }
 
 /// The rows of one answer's events; none where the page sent none, as older ones do.
-pub fn event_rows(session: &SessionColumns, trial: &Trial, payload: &Value) -> Vec<Vec<String>> {
+pub fn event_rows(session: &EventSession<'_>, trial: &Trial, payload: &Value) -> Vec<Vec<String>> {
     let columns = events_codebook();
-    let events = payload["events"].as_array().map_or(&[][..], Vec::as_slice);
+    let sent = trial.trial.rules().record().sound(payload).value;
+    let events = sent["events"].as_array().map_or(&[][..], Vec::as_slice);
     let row = |(event_index, event): (usize, &Value)| {
         let belonging = Belonging {
-            subject_id: session.subject_id.clone(),
-            session_id: session.session_id.clone(),
-            study_id: session.study_id.clone(),
-            version: session.version.clone(),
+            subject_id: session.subject_id.to_owned(),
+            session_id: session.session_id.to_owned(),
+            study_id: session.study_id.to_owned(),
+            version: session.version.to_owned(),
             trial_index: trial.trial_index,
             trial_kind: trial.trial.rules().name(),
             event_index,

@@ -25,7 +25,7 @@ export class EventLog {
   }
 
   /** What was kept, in ms since a trial's onset (negative: before it), and how many there were beyond; begins anew. */
-  take(onset: number): { events?: TrialEvent[]; events_dropped?: number } {
+  carry(onset: number): { events?: TrialEvent[]; events_dropped?: number } {
     const events = [...this.#kept].sort((a, b) => a.at - b.at).map(({ at, ...event }) => ({ ...event, time_ms: rounded(at - onset) }));
     const dropped = this.#dropped;
     [this.#kept, this.#dropped] = [[], 0];
@@ -33,7 +33,7 @@ export class EventLog {
   }
 
   /** Hears what happens to the page. */
-  watch(view: Window): void {
+  follow(view: Window): void {
     const page = view.document;
     view.addEventListener("blur", ({ target }) => target === view && this.add({ event: "blur" }));
     view.addEventListener("focus", ({ target }) => target === view && this.add({ event: "focus" }));
@@ -50,7 +50,7 @@ let log: EventLog | null = null;
 export function eventLog(): EventLog {
   if (log === null) {
     log = new EventLog();
-    log.watch(window);
+    log.follow(window);
   }
   return log;
 }

@@ -89,7 +89,7 @@ export class Taking<Role extends string> {
       hidden_ms: rounded(this.#hiddenMs()),
       geometry_changed: changed ? 1 : 0,
       ...(changed && { at_onset: this.#atOnset as Geometry }),
-      ...this.#log.take(this.#onset),
+      ...this.#log.carry(this.#onset),
     };
   }
 
