@@ -1,7 +1,7 @@
 //! What happened to participants' pages, as a table: one row an event.
 
-use crate::export::write_row;
 use crate::selection::Selection;
+use crate::table::Table;
 use kelir_store::{Store, StoreError};
 use kelir_study::columns::{EventSession, event_rows, events_codebook};
 use serde_json::Value;
@@ -11,15 +11,14 @@ use std::collections::HashMap;
 ///
 /// # Errors
 /// The store cannot be read.
-pub async fn events_csv(store: &Store, selection: &Selection) -> Result<String, StoreError> {
+pub async fn events_table(store: &Store, selection: &Selection) -> Result<Table, StoreError> {
     let study_id = &selection.study.id;
     let mut sessions = HashMap::new();
     for session in store.sessions(study_id, &selection.versions).await? {
         let trials = store.trials(&session.session_id).await?;
         sessions.insert(session.session_id.clone(), (session, trials));
     }
-    let mut out = String::new();
-    write_row(&mut out, events_codebook().into_iter().map(|column| column.name));
+    let mut rows = Vec::new();
     for row in store.answer_rows(study_id, &selection.versions).await? {
         let Some((session, trials)) = sessions.get(&row.session_id) else { continue };
         let Some(planned) = trials.get(row.trial_index as usize) else { continue };
@@ -30,21 +29,7 @@ pub async fn events_csv(store: &Store, selection: &Selection) -> Result<String, 
             study_id,
             version: &session.version,
         };
-        for cells in event_rows(&of, &planned.trial, &payload.unwrap_or(Value::Null)) {
-            write_row(&mut out, cells);
-        }
+        rows.extend(event_rows(&of, &planned.trial, &payload.unwrap_or(Value::Null)));
     }
-    Ok(out)
-}
-
-/// What each column of the table of events is: `column,type,unit,meaning,values`.
-pub fn events_codebook_csv() -> String {
-    let mut out = String::new();
-    write_row(&mut out, ["column", "type", "unit", "meaning", "values"].map(str::to_owned));
-    for column in events_codebook() {
-        let values: Vec<String> =
-            column.values.iter().map(|v| format!("{}: {}", v.value, v.meaning)).collect();
-        write_row(&mut out, [column.name, column.kind, column.unit, column.meaning, values.join("; ")]);
-    }
-    out
+    Ok(Table { name: "events", columns: events_codebook(), rows })
 }
