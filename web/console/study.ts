@@ -193,7 +193,7 @@ function data(selection: Selection): Node[] {
   return [
     h("h2", {}, "Report and data"),
     h("p", {}, file("report.html", "Download report (HTML)"), ": everything on this page and the methods, in one file that prints well. ", file("report.md", "Download report (Markdown)"), ": the same for a repository or a paper."),
-    h("p", {}, file("responses.csv", "Responses (CSV)"), ": one row a trial, as it was stored. ", file("codebook.csv", "Codebook (CSV)"), ": what each column means. ", file("pairs.csv", "Pairs (CSV)"), ": the choices as pwcmp reads them."),
+    h("p", {}, file("responses.csv", "Responses (CSV)"), ": one row a trial, as it was stored. ", file("codebook.csv", "Codebook (CSV)"), ": what each column means. ", file("pairs.csv", "Pairs (CSV)"), ": the choices as pwcmp reads them. ", file("events.csv", "Events (CSV)"), ": lost focus, resizes, inputs that did not count (", file("events-codebook.csv", "codebook"), ")."),
     h("p", { class: "quiet" }, "The same of the current version from the command line: ", h("code", {}, `kelir stats ${study} --format csv`), ", ", h("code", {}, `kelir report ${study} -o report.html`)),
   ];
 }

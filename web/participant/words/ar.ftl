@@ -40,6 +40,12 @@ key-left = الصورة اليسرى
 key-right = الصورة اليمنى
 key-first = الأولى
 key-second = الثانية
+key-upper = الصورة العليا
+key-lower = الصورة السفلى
+how-pair-touch = المس الصورة التي تختارها.
+how-pair-click = انقر على الصورة التي تختارها، أو اضغط على مفتاحها.
+how-interval-touch = المس زر الصورة التي تختارها.
+how-interval-click = انقر على زر الصورة التي تختارها، أو اضغط على مفتاحها.
 
 # المحاولات
 position = { $number } من { $all }

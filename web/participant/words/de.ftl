@@ -38,6 +38,12 @@ key-left = linkes Bild
 key-right = rechtes Bild
 key-first = erstes
 key-second = zweites
+key-upper = oberes Bild
+key-lower = unteres Bild
+how-pair-touch = Berühren Sie das Bild, das Sie wählen.
+how-pair-click = Klicken Sie auf das Bild, das Sie wählen, oder drücken Sie seine Taste.
+how-interval-touch = Berühren Sie die Schaltfläche des Bildes, das Sie wählen.
+how-interval-click = Klicken Sie auf die Schaltfläche des Bildes, das Sie wählen, oder drücken Sie seine Taste.
 
 # Durchgänge
 position = { $number } von { $all }

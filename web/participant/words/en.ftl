@@ -38,6 +38,12 @@ key-left = left image
 key-right = right image
 key-first = first
 key-second = second
+key-upper = upper image
+key-lower = lower image
+how-pair-touch = Touch the picture that you choose.
+how-pair-click = Click the picture that you choose, or press its key.
+how-interval-touch = Touch the button of the picture that you choose.
+how-interval-click = Click the button of the picture that you choose, or press its key.
 
 # Trials
 position = { $number } of { $all }
