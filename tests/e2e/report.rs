@@ -95,8 +95,8 @@ fn a_report_says_what_the_answers_say_in_every_form() {
 
     // Before there are answers: a report that says so, with no figure to draw.
     let empty = write("empty.html");
-    assert!(empty.contains("Nothing yet: nobody has answered.") && !empty.contains("<svg"));
-    assert!(stats("text").contains("Nothing yet"));
+    assert!(empty.contains("0 began.") && !empty.contains("<svg"));
+    assert!(stats("text").contains("0 began."));
 
     let server = Server::start(data.path(), true);
     answer(&server);
