@@ -2,7 +2,7 @@
 import { h } from "../shared/dom.ts";
 import { clockTime, count } from "../shared/format.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
-import { addressOf, fetchPaper, fetchReport, fetchResults, fetchStudies, fetchVersions, type Results, type Selection, type StudySummary, type StudyVersion } from "./api.ts";
+import { addressOf, fetchPaper, fetchReport, fetchResults, fetchStudies, fetchVersions, makeLink, type Results, type Selection, type StudySummary, type StudyVersion } from "./api.ts";
 import { choices } from "./choices.ts";
 import { copyButton, number } from "./copy.ts";
 import { gallery } from "./gallery.ts";
@@ -141,6 +141,7 @@ function head(id: string, title: string, results: Results | null): Node[] {
     h("p", { class: "quiet" }, id, ...(results === null ? [] : [" · version ", number(short(results.version), results.version)])),
     ...(others > 0 ? [h("p", { class: "quiet" }, `${count(others, "session")} of other versions of this study ${others === 1 ? "is" : "are"} stored too and left out here.`)] : []),
     invitation(id),
+    rehearsal(id),
   ];
 }
 
@@ -150,12 +151,31 @@ function invitation(study: string): HTMLElement {
   return h("p", { class: "invitation" }, h("a", { href: address, target: "_blank", rel: "noopener" }, address), copyButton("Copy the participants' link", () => address, { class: "primary" }));
 }
 
+/** Trying a study without spoiling it. Colleagues who do not sign in need a signed link. */
+function rehearsal(study: string): HTMLElement {
+  const preview = h("a", { href: `/study/${encodeURIComponent(study)}?preview`, target: "_blank", rel: "noopener", "data-testid": "preview" }, "Preview");
+  const made = h("span", { role: "status" });
+  const link = (visit: "pilot" | "preview", label: string) => {
+    const make = async () => {
+      try {
+        const { path, expires_at_s } = await makeLink(study, visit);
+        const address = `${location.origin}${path}`;
+        made.replaceChildren(h("code", {}, address), " ", copyButton("Copy it", () => address), ` Good until ${new Date(expires_at_s * 1000).toLocaleString("en")}.`);
+      } catch {
+        made.textContent = "The link could not be made. Please try again.";
+      }
+    };
+    return h("button", { type: "button", "data-testid": `${visit}-link`, onclick: () => void make() }, label);
+  };
+  return h("p", { class: "quiet" }, "Try it: ", preview, " (nothing is stored), or make a ", link("pilot", "Pilot link"), " (stored, left out of every analysis) or a ", link("preview", "Preview link"), " for somebody who does not sign in. ", made);
+}
+
 function participants(results: Results | null, id: string): Node[] {
   const { started, in_progress, completed } = results?.participants ?? { started: 0, in_progress: 0, completed: 0 };
   const figure = (n: number, label: string, testid: string) => h("div", { class: "figure" }, h("strong", { "data-testid": testid }, number(n.toLocaleString("en"), n)), h("span", {}, label));
   const heading = h("h2", {}, "Participants");
   const summary = h("p", { "data-testid": "standing" }, results?.standing.summary ?? "0 began.");
-  const begin = `Send people the link above, or open it yourself to try the study: /study/${id}.`;
+  const begin = "Send people the link above; to try the study yourself, use Preview.";
   if (started === 0) return [heading, summary, h("p", { class: "empty" }, begin), ...leftOut(results)];
   return [
     heading,

@@ -32,6 +32,7 @@ pub use files::sha256_hex;
 pub use first_chain::GENESIS;
 pub use import::ImportedSession;
 pub use persons::Begun;
+pub use pixels::picture_size;
 pub use plans::{PlannedSession, PlannedTrial, StimulusHashes};
 pub use reading::StoredAnswers;
 pub use sessions::{Completed, NewSession, Participants, Session, SessionKind};

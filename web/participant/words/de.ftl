@@ -113,3 +113,9 @@ answer-again = Eine Antwort konnte nicht gespeichert werden, deshalb sind ihre B
 too-old = Dieser Browser ist zu alt für diese Studie. Bitte öffnen Sie den Link in einem neueren: { $browsers } oder später.
 not-loaded = Diese Seite konnte nicht vollständig geladen werden. Bitte prüfen Sie die Verbindung und laden Sie sie neu.
 no-script = Diese Studie braucht JavaScript. Bitte schalten Sie es für diese Seite ein, oder öffnen Sie den Link in einem anderen Browser.
+
+# Eine Studie ausprobieren
+trying-preview = Vorschau: Nichts wird gespeichert.
+trying-pilot = Probelauf: Antworten werden gespeichert und in keiner Auswertung gezählt.
+trying-restart = Von vorn beginnen
+link-title = Dieser Link kann nicht benutzt werden

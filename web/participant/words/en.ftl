@@ -113,3 +113,9 @@ answer-again = An answer could not be stored, so its pictures are here once more
 too-old = This browser is too old for this study. Please open the link in a newer one: { $browsers }, or later.
 not-loaded = This page could not be loaded in full. Please check the connection and reload it.
 no-script = This study needs JavaScript. Please switch it on for this page, or open the link in another browser.
+
+# Trying a study
+trying-preview = Preview: nothing is stored.
+trying-pilot = Pilot: answers are stored, and left out of every analysis.
+trying-restart = Start again
+link-title = This link can't be used

@@ -66,15 +66,18 @@ test("a lost acknowledgement costs nothing and doubles nothing", async (t) => {
   assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"], [2, "left"], [3, "left"], [4, "left"]]]);
 });
 
-test("an answer that the server refuses for good is kept and said, and no code is shown", async (t) => {
+test("a trial whose answer the server refuses is taken again; refused once more it is kept and said, and no code is shown", async (t) => {
   let refuse = true;
-  const errors = [{ pointer: "/rt", value: -1, rule: "must be a number from 0 to 86400000" }];
+  const errors = [{ pointer: "/choice", value: "left", rule: "must be otherwise" }];
   const [, body] = problem(422, "invalid_field", "The answer has a fault.", { errors });
   const v = await visit(t, { fault: ({ method, path }) => (refuse && method === "PUT" && path.endsWith("/trials/1") ? { status: 422, body } : null) });
   await begin(v);
-  await answer(v, 0, 5);
+  await answer(v, 0, 3);
+  await v.page.getByText("An answer could not be stored, so its pictures are here once more. Please choose again.").waitFor();
+  await answer(v, 1, 2);
+  await answer(v, 3, 5);
   await v.page.getByText("One answer could not be stored").waitFor();
-  await v.page.getByText("The answer has a fault. /rt = -1: must be a number from 0 to 86400000.").waitFor();
+  await v.page.getByText("The answer has a fault. /choice = \"left\": must be otherwise.").waitFor();
   assert.equal(await v.hook("completion-code").count(), 0);
   refuse = false;
   await v.page.getByRole("button", { name: "Try again" }).click();
