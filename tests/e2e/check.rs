@@ -260,3 +260,45 @@ fn one_json_on_every_command_that_prints_results_and_old_spellings_still_work() 
     drop(server);
     parsed(&["scene", "check", "kayon", "--json"]);
 }
+
+/// The README's commands of the binary alone, run one after the other in an empty folder.
+#[test]
+fn the_readmes_commands_are_true_from_an_empty_folder() {
+    let readme = std::fs::read_to_string(kelir_tests::root().join("README.md")).unwrap();
+    let block = readme.split("## The binary alone").nth(1).unwrap().split("```").nth(1).unwrap();
+    let lines = block.lines().filter(|line| line.starts_with("kelir "));
+    let commands: Vec<Vec<&str>> =
+        lines.map(|line| line.split('#').next().unwrap().split_whitespace().skip(1).collect()).collect();
+    assert!(commands.len() > 20, "{}", commands.len());
+    let empty = tempfile::tempdir().unwrap();
+    // These run for ever, or for minutes; names of what they draw are tried by others.
+    let long = ["serve", "bench", "power", "animate"];
+    // These work; those of a study that nobody has taken say so, and what they say is not about their arguments.
+    let works = [
+        "new",
+        "study check mine/studies/my-study.toml",
+        "scene list",
+        "render",
+        "study link",
+        "stats ttest",
+        "paper",
+    ];
+    let mut worked = 0;
+    for command in commands.iter().filter(|command| !long.contains(&command[0])) {
+        let small: &[&str] =
+            if command[0] == "render" && !command.contains(&"--size") { &["--size", "64x36"] } else { &[] };
+        let out = std::process::Command::new(kelir_tests::binary())
+            .args(command)
+            .args(small)
+            .current_dir(empty.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&out.stderr);
+        assert!(!said.contains("Usage:") && !said.contains("try '--help'"), "{command:?}: {said}");
+        if works.iter().any(|name| command.join(" ").starts_with(name)) {
+            assert!(out.status.success(), "{command:?}: {said}");
+            worked += 1;
+        }
+    }
+    assert!(worked >= works.len(), "{worked}");
+}
