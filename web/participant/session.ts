@@ -5,6 +5,7 @@ import * as api from "./api.ts";
 import { describeDisplay } from "./display.ts";
 import { persist, say } from "./notice.ts";
 import { Outbox } from "./outbox.ts";
+import { Ended } from "./pages.ts";
 import { remaining, withAnswered } from "./plan.ts";
 import type { Store } from "./storage.ts";
 import { words } from "./words/index.ts";
@@ -18,6 +19,15 @@ interface Remembered extends api.Credentials {
 function remembered(kept: Partial<Remembered> | null): Remembered | null {
   const { session_id, token, reloads } = typeof kept === "object" && kept !== null ? kept : {};
   return typeof session_id === "string" && typeof token === "string" ? { session_id, token, reloads: typeof reloads === "number" ? reloads : 0 } : null;
+}
+
+/** Why there is no session, as a page of its own where it is the link's doing. */
+function noSession(error: unknown): unknown {
+  const code = error instanceof Refused ? error.code : "";
+  if (code === "already_finished") return new Ended(words("finished-title"), [words("finished")], error);
+  if (code === "already_begun") return new Ended(words("begun-title"), [words("begun")], error);
+  if (code === "invalid_field") return new Ended(words("link-title"), [words("link")], error);
+  return error;
 }
 
 /** Stands between a session's key and its id once it is left. */
@@ -130,7 +140,7 @@ export class Session {
     } catch (error) {
       // A final no: the next try is another one.
       this.#store.remove(this.#startKey);
-      throw error;
+      throw noSession(error);
     }
   }
 

@@ -51,6 +51,8 @@ export interface Options {
   grow?: { start: number; most: number } | null;
   /** A script that runs before the page's own. */
   spoil?: string;
+  /** When an answer counts. */
+  response?: Study["response"];
   /** Each visit is somebody else's. */
   perVisit?: boolean;
 }
@@ -60,12 +62,12 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, perVisit = false, spoil = "" }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, perVisit = false, spoil = "" }: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
 
-  const found = (): Study => ({ ...study, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
+  const found = (): Study => ({ ...study, response, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
     return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));

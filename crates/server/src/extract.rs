@@ -149,6 +149,18 @@ fn bearer(headers: &HeaderMap) -> Option<&str> {
     scheme.eq_ignore_ascii_case("bearer").then(|| token.trim())
 }
 
+/// The SHA-256 of the token that a request holds.
+pub(crate) struct Token(pub(crate) String);
+
+impl<S: Send + Sync> FromRequestParts<S> for Token {
+    type Rejection = Box<Problem>;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Box<Problem>> {
+        let unknown = || Problem::new(ProblemCode::Unauthorized, "The request holds no token.");
+        bearer(&parts.headers).map(|token| Token(sha256_hex(token.as_bytes()))).ok_or_else(unknown)
+    }
+}
+
 /// The value of one cookie.
 pub(crate) fn cookie<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
     headers
@@ -179,6 +191,20 @@ impl FromRequestParts<Arc<App>> for Participant {
     }
 }
 
+/// The name of the researcher who is signed in, if one is.
+pub(crate) struct SignedIn(pub(crate) Option<String>);
+
+impl FromRequestParts<Arc<App>> for SignedIn {
+    type Rejection = Box<Problem>;
+
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Box<Problem>> {
+        match cookie(&parts.headers, crate::routes::COOKIE) {
+            Some(token) => Ok(SignedIn(app.store.signed_in(&sha256_hex(token.as_bytes())).await?)),
+            None => Ok(SignedIn(None)),
+        }
+    }
+}
+
 /// The researcher who is signed in, by name.
 pub(crate) struct Researcher(pub(crate) String);
 
@@ -187,7 +213,7 @@ impl FromRequestParts<Arc<App>> for Researcher {
 
     async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Box<Problem>> {
         let sign_in = || Problem::new(ProblemCode::Unauthorized, "Sign in first.");
-        let token = cookie(&parts.headers, crate::routes::COOKIE).ok_or_else(sign_in)?;
-        app.store.signed_in(&sha256_hex(token.as_bytes())).await?.map(Researcher).ok_or_else(sign_in)
+        let SignedIn(name) = SignedIn::from_request_parts(parts, app).await?;
+        name.map(Researcher).ok_or_else(sign_in)
     }
 }

@@ -5,31 +5,44 @@
 
 pub mod api;
 mod app;
+mod check;
 mod error;
+mod events;
 mod export;
 mod extract;
 mod headers;
 mod library;
 mod limiter;
+pub mod links;
 mod making;
+mod participants;
 mod password;
 mod picture;
+mod previews;
 mod render;
 pub mod results;
 mod routes;
 mod selection;
 mod server;
+pub mod shipped;
+mod table;
 mod viewer;
 mod web;
+mod workbook;
 
+pub use check::check_study;
 pub use error::{StartError, StudyFileError};
-pub use export::{codebook_csv, responses_csv};
-pub use library::{Library, check_study};
+pub use events::events_table;
+pub use export::{codebook_csv, responses_csv, responses_table, spreadsheet};
+pub use library::Library;
 pub use making::{Made, Maker, Making, Task};
+pub use participants::participants_table;
 pub use render::RenderMaker;
 pub use routes::openapi_json;
-pub use selection::{Selection, SelectionError, VersionRef, With};
+pub use selection::{Include, Selection, SelectionError, VersionRef, With};
 pub use server::{Handle, Server, ServerConfig};
+pub use table::{Table, codebook_of};
+pub use workbook::workbook;
 
 /// Re-exported for callers that read a data folder without a server.
 pub use kelir_store::{Store, StoreError};

@@ -3,20 +3,21 @@
 //! sqlx hands every row from thread to thread, some ten microseconds each; a million answers want a cursor. So this reads with
 //! rusqlite: the same SQLite library in the same process, read-only, on as many threads as there are cores.
 
+use crate::clock::micros;
 use crate::error::StoreError;
+use crate::readers::connect;
 use crate::sqlite::{DATABASE, Store};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::{Answers, Row};
 use kelir_study::trials::{Shown, rules};
 use rusqlite::fallible_streaming_iterator::FallibleStreamingIterator;
-use rusqlite::{Connection, OpenFlags, OptionalExtension, Statement};
+use rusqlite::{Connection, OptionalExtension, Statement};
 use serde::de::IgnoredAny;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// The answers to some versions of a study up to some moment. Answers are never changed, so it only ever grows:
 /// [`Store::read_on`] adds what has come since.
@@ -101,7 +102,7 @@ fn read_first(
     part: &mut Part<'_>,
 ) -> Result<(), StoreError> {
     let mut statement = connection.prepare(
-        "SELECT session_id, pair_id, left_condition, right_condition, trial_index, choice = 'left', rt_ms FROM responses
+        "SELECT session_id, pair_id, left_condition, right_condition, trial_index, choice = 'left', rt_ms, received_at FROM responses
          WHERE response_id BETWEEN ?1 AND ?2 ORDER BY response_id",
     )?;
     let mut rows = statement.query((range.start(), range.end()))?;
@@ -113,7 +114,8 @@ fn read_first(
         if part.is_ours(session_id)? {
             let Ok(trial_index) = row.get(4) else { continue };
             let choice = Row::choice(session_id, trial_index, item, [left, right], row.get(5)?, row.get(6)?);
-            part.answers.push(choice);
+            let received_us = text(row, 7).and_then(micros);
+            part.answers.push(Row { received_us, ..choice });
         }
     }
     Ok(())
@@ -127,7 +129,7 @@ type RowValues<'a> = (
     IgnoredAny,
     Cow<'a, str>,
     Shown<'a>,
-    IgnoredAny,
+    Cow<'a, str>,
     IgnoredAny,
     IgnoredAny,
 );
@@ -165,9 +167,9 @@ fn read_second(
         else {
             continue;
         };
-        let (_, _, _, _, kind, shown, _, _, _) = values;
+        let (_, _, _, _, kind, shown, received_at, _, _) = values;
         let Some(Ok(observation)) = rules(&kind).map(|rules| rules.observe(&shown, answer)) else { continue };
-        part.answers.push(Row { session_id, trial_index, observation });
+        part.answers.push(Row { session_id, trial_index, observation, received_us: micros(&received_at) });
     }
     Ok(())
 }
@@ -210,7 +212,8 @@ impl Part<'_> {
 impl Source {
     /// The answers of a chain after a row, in parts by rising rows of at least `share`, and the number of the last.
     fn read(&self, chain: &Chain, after: i64, share: i64) -> Result<(i64, Vec<Answers>), StoreError> {
-        let through: i64 = self.connect()?.query_row(chain.newest, [&*self.study_id], |row| row.get(0))?;
+        let through: i64 =
+            connect(&self.database)?.query_row(chain.newest, [&*self.study_id], |row| row.get(0))?;
         if through <= after {
             return Ok((after, Vec::new()));
         }
@@ -230,15 +233,8 @@ impl Source {
         Ok((through, answers))
     }
 
-    fn connect(&self) -> Result<Connection, rusqlite::Error> {
-        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let connection = Connection::open_with_flags(&self.database, flags)?;
-        connection.busy_timeout(Duration::from_secs(10))?;
-        Ok(connection)
-    }
-
     fn read_part(&self, chain: &Chain, range: RangeInclusive<i64>) -> Result<Answers, StoreError> {
-        let connection = self.connect()?;
+        let connection = connect(&self.database)?;
         let version =
             connection.prepare("SELECT version FROM sessions WHERE session_id = ?1 AND study_id = ?2")?;
         let mut part = Part { source: self, version, ours: HashMap::new(), answers: self.empty.clone() };

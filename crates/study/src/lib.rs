@@ -7,6 +7,8 @@ mod definition;
 mod fields;
 mod parse;
 mod problems;
+#[cfg(test)]
+mod reference;
 
 pub mod adaptive;
 pub mod analysis;
@@ -19,6 +21,7 @@ pub mod schema;
 pub mod screening;
 pub mod trials;
 pub mod versions;
+pub mod visits;
 
 pub use conduct::{NEWEST_EDITION, Repeat, ResponseRules, SessionRules};
 pub use definition::{

@@ -5,6 +5,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use kelir_store::StoreError;
 use kelir_study::schema::{FieldError, worded};
+use kelir_study::visits::RefusedId;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -29,6 +30,8 @@ worded! {
         Unauthorized = "unauthorized",
         /// That is not the password.
         WrongPassword = "wrong_password",
+        /// The link is signed and not good: it has ended or was changed.
+        LinkRefused = "link_refused",
         /// There is nothing of this name.
         NotFound = "not_found",
         /// The address does not take this method.
@@ -37,6 +40,10 @@ worded! {
         NoConsent = "no_consent",
         /// The trial has another answer already; `stored` is what stands.
         AlreadyAnswered = "already_answered",
+        /// Somebody with this id has begun the study already; whoever that is goes on in the browser where it was.
+        AlreadyBegun = "already_begun",
+        /// Somebody with this id has finished the study already; the code is shown in the browser where it was.
+        AlreadyFinished = "already_finished",
         /// Trials have no answer yet: those in `missing`, or others that are still to be decided where `more` is true.
         Incomplete = "incomplete",
         /// The body is larger than the address takes.
@@ -65,11 +72,14 @@ impl ProblemCode {
             | ProblemCode::InvalidParameter
             | ProblemCode::AmbiguousVersion => StatusCode::BAD_REQUEST,
             ProblemCode::Unauthorized | ProblemCode::WrongPassword => StatusCode::UNAUTHORIZED,
+            ProblemCode::LinkRefused => StatusCode::FORBIDDEN,
             ProblemCode::NotFound => StatusCode::NOT_FOUND,
             ProblemCode::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
-            ProblemCode::NoConsent | ProblemCode::AlreadyAnswered | ProblemCode::Incomplete => {
-                StatusCode::CONFLICT
-            }
+            ProblemCode::NoConsent
+            | ProblemCode::AlreadyAnswered
+            | ProblemCode::AlreadyBegun
+            | ProblemCode::AlreadyFinished
+            | ProblemCode::Incomplete => StatusCode::CONFLICT,
             ProblemCode::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             ProblemCode::NotJson => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             ProblemCode::InvalidField => StatusCode::UNPROCESSABLE_ENTITY,
@@ -176,6 +186,13 @@ impl Problem {
     /// One parameter that breaks a rule.
     pub fn parameter(name: &str, value: &str, rule: impl Into<String>) -> Box<Problem> {
         Problem::fields(ProblemCode::InvalidParameter, vec![FieldError::at(name, value, rule)])
+    }
+
+    /// An id that cannot be taken, by the parameter that it came in.
+    pub(crate) fn refused_id(RefusedId { name, value, rule }: RefusedId) -> Box<Problem> {
+        let mut error = FieldError::at(&name, value, rule);
+        error.pointer.insert_str(0, "/params");
+        Problem::fields(ProblemCode::InvalidField, vec![error])
     }
 
     pub(crate) fn not_found(what: &str) -> Box<Problem> {

@@ -1,29 +1,27 @@
 //! Taking part: a session from its beginning to its code. Conditions never leave the server.
 
 use super::studies::{StudyPath, told};
-use super::{Answered, Fresh};
+use super::{Answered, Fresh, links, previews};
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, StimulusRef, Trial, refusals,
 };
-use crate::app::{App, Begun};
-use crate::extract::{Body, Object, Parameters, Participant, Query};
+use crate::app::App;
+use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
+use crate::links::{Visit, is_of_link};
 use crate::making::StimulusMap;
 use crate::password::{random_code, random_token};
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{
-    Appended, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session, SessionKind,
-    StimulusHashes, sha256_hex,
+    Appended, Begun, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session,
+    SessionKind, StimulusHashes, sha256_hex,
 };
 use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use utoipa::IntoParams;
-
-/// Parameters by which recruiting panels name their participants, in order of preference.
-const SUBJECT_PARAMS: [&str; 4] = ["PROLIFIC_PID", "workerId", "subject_id", "id"];
 
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Path)]
@@ -37,16 +35,18 @@ pub(crate) struct SessionPath {
 #[into_params(parameter_in = Path)]
 pub(crate) struct TrialPath {
     /// The session's id.
-    #[expect(dead_code, reason = "`Participant` reads it, with the token")]
-    session: String,
+    pub(super) session: String,
     /// The trial's index, in plain digits.
     #[param(value_type = u32)]
-    trial_index: String,
+    pub(super) trial_index: String,
 }
 
-refusals!(NotCreated: NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
+refusals!(NotCreated: Unauthorized, LinkRefused, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
 
 /// Begin a session. The answer holds its token, which is told this once.
+///
+/// Where somebody with the same id has begun before, the study file says what happens: another session begins, flagged; the one that is there
+/// goes on, with a new token in place of the old one; or none does.
 #[utoipa::path(
     post, path = "/api/v1/studies/{study}/sessions", tag = "participants", params(StudyPath), request_body = NewSession,
     responses((status = CREATED, description = "The session.", body = CreatedSession), NotCreated)
@@ -54,6 +54,7 @@ refusals!(NotCreated: NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJs
 pub(crate) async fn create_session(
     State(app): State<Arc<App>>,
     Parameters(StudyPath { study }): Parameters<StudyPath>,
+    SignedIn(researcher): SignedIn,
     headers: HeaderMap,
     Body(new): Body<NewSession>,
 ) -> Result<(StatusCode, Fresh<CreatedSession>), Box<Problem>> {
@@ -61,28 +62,56 @@ pub(crate) async fn create_session(
     let served = loaded.ready()?;
     let token = random_token();
     let params = new.params.unwrap_or_default();
+    let pairs: Vec<(String, String)> = params.clone().into_iter().collect();
+    let visit = links::visit(&app, &loaded.study.id, &pairs, researcher.is_some())?;
+    if visit == Visit::Preview {
+        let begun = crate::app::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
+        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun)?)));
+    }
+    let is_pilot = visit == Visit::Pilot;
+    let kind = if is_pilot { SessionKind::Pilot } else { new.kind.unwrap_or_default() };
+    if kind != SessionKind::Participant && !is_pilot && researcher.is_none() {
+        let detail = "Sign in first: a session that is no participant's is a researcher's.";
+        return Err(Problem::new(ProblemCode::Unauthorized, detail));
+    }
+    let person = loaded.study.session.identify(&params).map_err(Problem::refused_id)?;
     let new = kelir_store::NewSession {
         study_id: loaded.study.id.clone(),
         version: served.version.clone(),
         file_hash: loaded.file_hash.clone(),
-        subject_id: subject(&params),
+        subject_id: person.map(|(_, id)| id.to_owned()),
         token_hash: sha256_hex(token.as_bytes()),
-        kind: SessionKind::Participant,
+        kind,
         flags: Vec::new(),
+        repeat: loaded.study.session.repeat,
         start_key: None,
         user_agent: user_agent(&headers),
-        params: params.into_iter().collect(),
+        params: params.into_iter().filter(|(name, _)| !is_pilot || !is_of_link(name)).collect(),
         display: new.display.unwrap_or_default().into(),
         idle: loaded.idle(),
     };
-    let plan = |slot| {
-        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&loaded.study, slot);
+    let study = loaded.study.clone();
+    let plan = move |slot| {
+        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&study, slot);
         let next = NextTrials { trials: planned(&served.stimuli, trials)?, more };
         Ok::<_, Box<Problem>>(PlannedSession { seed, next })
     };
-    let session = app.store.create_session(new, plan).await?;
+    let session = match app.store.create_session(new, plan).await? {
+        Begun::New(session) | Begun::Again(session) => session,
+        Begun::Refused { is_finished } => return Err(taken(is_finished)),
+    };
     let state = state_of(&app, &session).await?;
     Ok((StatusCode::CREATED, Fresh(CreatedSession { state, token })))
+}
+
+/// Why the person of a link does not begin anew. The code is told to nobody but the browser that holds the session's token: an id can be guessed.
+fn taken(is_finished: bool) -> Box<Problem> {
+    if is_finished {
+        let detail = "This study has been finished with this link, and can be taken once. Its code is shown in the browser where it was finished.";
+        return Problem::new(ProblemCode::AlreadyFinished, detail);
+    }
+    let detail = "This study has been begun with this link, and can be taken once. Please go on in the browser where it was begun.";
+    Problem::new(ProblemCode::AlreadyBegun, detail)
 }
 
 /// What the browser calls itself, at most 512 characters of it.
@@ -93,7 +122,7 @@ fn user_agent(headers: &HeaderMap) -> Option<String> {
 }
 
 /// Trials with their stimuli filled in.
-fn planned(
+pub(super) fn planned(
     stimuli: &StimulusMap,
     trials: Vec<kelir_study::Trial>,
 ) -> Result<Vec<PlannedTrial>, Box<Problem>> {
@@ -170,7 +199,8 @@ pub(crate) async fn put_answer(
     let answer = checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))?.answer;
     let new = NewAnswer { trial_index: trial.trial_index, answer, payload: body.text };
     let begun = app.begun(&session).await?;
-    let next = |progress: Progress| next_of(&begun, session.slot, &progress);
+    let (deciding, slot) = (begun.clone(), session.slot);
+    let next = move |progress: Progress| next_of(&deciding, slot, &progress);
     match app.store.append_answer(&session, &new, next).await? {
         Appended::Stored | Appended::Same => {}
         Appended::Different(stored) => {
@@ -212,7 +242,11 @@ pub(crate) async fn post_answer(
 }
 
 /// What follows in a session from what it was shown and answered.
-fn next_of(begun: &Begun, slot: u32, progress: &Progress) -> Result<NextTrials, Box<Problem>> {
+pub(super) fn next_of(
+    begun: &crate::app::Begun,
+    slot: u32,
+    progress: &Progress,
+) -> Result<NextTrials, Box<Problem>> {
     let study = &begun.study;
     let chose_target = |index: u32| {
         let trial = &progress.trials.get(index as usize)?.trial;
@@ -284,7 +318,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     })
 }
 
-fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -> Trial {
+pub(super) fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -> Trial {
     let trial = &planned.trial;
     let stimulus =
         |sha256: &str| StimulusRef { sha256: sha256.to_owned(), url: format!("/stimuli/{sha256}") };
@@ -306,14 +340,4 @@ fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -
 fn completion(study: &StudyDefinition, session: &Session, completion_code: String) -> Completion {
     let params = BTreeMap::deserialize(&session.params).unwrap_or_default();
     Completion { redirect: study.completion.redirect_to(&completion_code, &params), completion_code }
-}
-
-/// The panel's name for the participant; only what can stand in a file name and starts no spreadsheet formula.
-fn subject(params: &BTreeMap<String, String>) -> Option<String> {
-    let plain = |s: &&String| {
-        (1..=128).contains(&s.len())
-            && s.starts_with(|c: char| c.is_ascii_alphanumeric())
-            && s.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_')
-    };
-    SUBJECT_PARAMS.iter().filter_map(|name| params.get(*name)).find(plain).cloned()
 }

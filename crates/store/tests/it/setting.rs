@@ -76,6 +76,7 @@ pub fn png(shade: u8, compression: CompressionType) -> Vec<u8> {
 }
 
 /// A study that is served.
+#[derive(Clone)]
 pub struct Served {
     pub study: StudyDefinition,
     pub version: String,
@@ -155,13 +156,16 @@ pub async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
         token_hash: "t".to_owned(),
         kind: Default::default(),
         flags: Vec::new(),
+        repeat: Default::default(),
         start_key: None,
         user_agent: None,
         params: json!({}),
         display: json!({}),
         idle,
     };
-    store.create_session(new, |slot| Ok::<_, StoreError>(served.plan(slot))).await.unwrap()
+    let served = served.clone();
+    let begun = store.create_session(new, move |slot| Ok::<_, StoreError>(served.plan(slot))).await;
+    begun.unwrap().session().unwrap()
 }
 
 /// An answer as a page sends it to a kind of trial.
