@@ -18,9 +18,9 @@ document.body.append(display, notice);
 speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
-/** What the link says of the participant, within what the server takes. */
+/** What the link says of the participant, within what the server takes; an id that is too long stays so, and is refused aloud. */
 const params = Object.fromEntries(
-  [...new URLSearchParams(location.search)].filter(([name, value]) => new Blob([name]).size <= 64 && new Blob([value]).size <= 512).slice(0, 64),
+  [...new URLSearchParams(location.search)].filter(([name]) => [...name].length <= 64).map(([name, value]) => [name, [...value].slice(0, 1024).join("")]).slice(0, 64),
 );
 
 async function start(): Promise<void> {

@@ -7,6 +7,7 @@ pub mod api;
 mod app;
 mod check;
 mod error;
+mod events;
 mod export;
 mod extract;
 mod headers;
@@ -31,6 +32,7 @@ mod workbook;
 
 pub use check::check_study;
 pub use error::{StartError, StudyFileError};
+pub use events::events_table;
 pub use export::{codebook_csv, responses_csv, responses_table, spreadsheet};
 pub use library::Library;
 pub use making::{Made, Maker, Making, Task};

@@ -56,8 +56,8 @@ pub fn run(args: &Args) -> Result<()> {
 /// Errors: something is there already.
 fn refuse_full(dir: &Path) -> Result<()> {
     let said = |rule: &str| Err(bad_input(format!("DIR = {}: {rule}", dir.display())));
-    match fs::read_dir(dir) {
-        Ok(mut entries) if entries.next().is_some() => said("is not empty, and nothing in it is touched"),
+    match fs::read_dir(dir).map(|mut entries| entries.next().is_some()) {
+        Ok(true) => said("is not empty, and nothing in it is touched"),
         Ok(_) if std::env::current_dir().is_ok_and(|here| here == dir) => {
             said("is the folder you are in; go one up and name it from there")
         }

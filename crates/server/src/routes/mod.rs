@@ -64,6 +64,8 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(versions::get_export_xlsx),
         routes!(versions::get_pairs_csv),
         routes!(versions::get_codebook_csv),
+        routes!(versions::get_events_csv),
+        routes!(versions::get_events_codebook_csv),
         routes!(versions::get_codebook),
         routes!(papers::get_taylor_cameron),
         routes!(document::get_openapi),

@@ -90,8 +90,9 @@ pub(crate) async fn create_session(
         display: new.display.unwrap_or_default().into(),
         idle: loaded.idle(),
     };
-    let plan = |slot| {
-        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&loaded.study, slot);
+    let study = loaded.study.clone();
+    let plan = move |slot| {
+        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&study, slot);
         let next = NextTrials { trials: planned(&served.stimuli, trials)?, more };
         Ok::<_, Box<Problem>>(PlannedSession { seed, next })
     };
@@ -198,7 +199,8 @@ pub(crate) async fn put_answer(
     let answer = checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))?.answer;
     let new = NewAnswer { trial_index: trial.trial_index, answer, payload: body.text };
     let begun = app.begun(&session).await?;
-    let next = |progress: Progress| next_of(&begun, session.slot, &progress);
+    let (deciding, slot) = (begun.clone(), session.slot);
+    let next = move |progress: Progress| next_of(&deciding, slot, &progress);
     match app.store.append_answer(&session, &new, next).await? {
         Appended::Stored | Appended::Same => {}
         Appended::Different(stored) => {
