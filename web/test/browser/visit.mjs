@@ -38,7 +38,7 @@ export async function visit(t, { options = sizes.desktop, query = "", chromium =
     assert.deepEqual(problems, []);
   });
   const url = `${mock.url}/study/${study.id}${query}`;
-  await page.goto(url);
+  await page.goto(url, { waitUntil: "commit" });
   return { mock, context, page, problems, url, hook: (id) => page.getByTestId(id) };
 }
 

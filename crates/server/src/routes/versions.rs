@@ -228,7 +228,7 @@ pub(crate) async fn get_events_csv(
 
 /// What each column of `events.csv` is, as a table.
 #[utoipa::path(
-    get, path = "/api/v1/studies/{study}/versions/{version}/events-codebook.csv", tag = "results", security(("researcher" = [])),
+    get, path = "/api/v1/studies/{study}/versions/{version}/events_codebook.csv", tag = "results", security(("researcher" = [])),
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
@@ -239,7 +239,7 @@ pub(crate) async fn get_events_codebook_csv(
     Query(pooling): Query<Pooling>,
 ) -> File {
     chosen(&app, &path, &pooling).await?;
-    Ok(csv(&format!("{}-events-codebook.csv", path.study), codebook_of(&events_codebook()).csv()))
+    Ok(csv(&format!("{}-events_codebook.csv", path.study), codebook_of(&events_codebook()).csv()))
 }
 
 /// What each column of `responses.csv` is, as a table.
