@@ -1,6 +1,7 @@
 /** The participant's page: one study, from consent to the completion code. */
 import { Refused } from "../shared/http.ts";
 import * as api from "./api.ts";
+import { choose, inLanguage } from "./language.ts";
 import { inkOn, srgbCode } from "./layout.ts";
 import { notice, persist } from "./notice.ts";
 import { action, askToTakeOver, display, Ended, lastPage } from "./pages.ts";
@@ -16,9 +17,10 @@ document.body.append(display, notice);
 speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
-/** What the link says of the participant, within what the server takes. */
+const query = new URLSearchParams(location.search);
+/** What the link says of the participant, within what the server takes; `lang` is the page's own. */
 const params = Object.fromEntries(
-  [...new URLSearchParams(location.search)].filter(([name, value]) => new Blob([name]).size <= 64 && new Blob([value]).size <= 512).slice(0, 64),
+  [...query].filter(([name, value]) => name !== "lang" && new Blob([name]).size <= 64 && new Blob([value]).size <= 512).slice(0, 64),
 );
 
 async function start(): Promise<void> {
@@ -36,20 +38,26 @@ async function start(): Promise<void> {
     if (!(error instanceof Refused) || error.status !== 404) throw error;
     return lastPage(words("no-study-title"), [words("no-study")]);
   }
-  document.title = study.title;
-  dress(study.surround);
+  study = dressed(study, choose(study, query.get("lang"), navigator.languages));
   if (elsewhere) await askToTakeOver();
   tabs.claim();
   session = new Session(study.id, key, params, openStore(() => localStorage));
   await session.resume();
   if (session.state !== null) {
     // A session keeps the texts and the question that it began with.
-    study = session.state.study;
-    document.title = study.title;
-    dress(study.surround);
+    study = dressed(session.state.study, session.state.language);
   }
   if (session.state?.status !== "completed") session.rescue();
   await new Visit(study, session).run();
+}
+
+/** The study as it reads in a language; the page speaks that, too. */
+function dressed(study: api.Study, language: string): api.Study {
+  const read = inLanguage(study, language);
+  speak(language);
+  document.title = read.title;
+  dress(read.surround);
+  return read;
 }
 
 /** Sets the grey that surrounds everything, and an ink that can be read on it. */

@@ -76,9 +76,9 @@ export class Session {
   }
 
   /** Nothing is stored of anybody before this. */
-  async consent(): Promise<void> {
+  async consent(language: string): Promise<void> {
     if (this.#who === null) {
-      const { token, ...state } = await persist(() => api.createSession(this.#studyId, { params: this.#params, display: describeDisplay() }));
+      const { token, ...state } = await persist(() => api.createSession(this.#studyId, { params: this.#params, display: describeDisplay(language) }));
       this.#remember({ session_id: state.session_id, token, reloads: 0 });
       this.#outbox = this.#openOutbox();
     }

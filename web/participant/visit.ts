@@ -4,6 +4,7 @@ import { h, paragraphs } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
 import type { Study, Trial } from "./api.ts";
 import { measureRefresh } from "./display.ts";
+import { inLanguage } from "./language.ts";
 import { say } from "./notice.ts";
 import { askAgain, consentContent, display, Ended, instructionsContent, showThanks } from "./pages.ts";
 import { position } from "./plan.ts";
@@ -36,9 +37,10 @@ export class Visit {
     this.#session = session;
   }
 
-  /** The study as it was when the session began; before that, as it is now. */
+  /** The study as it was when the session began, in its language; before that, as it is now. */
   get #study(): Study {
-    return this.#session.state?.study ?? this.#found;
+    const { state } = this.#session;
+    return state === null ? this.#found : inLanguage(state.study, state.language);
   }
 
   async run(): Promise<void> {
@@ -68,10 +70,10 @@ export class Visit {
     return {
       type: TextPage,
       heading: this.#study.title,
-      content: () => consentContent(this.#study),
+      content: () => consentContent(this.#study, this.#session.state === null),
       button: words("consent-agree"),
       testid: "consent-agree",
-      action: () => this.#session.consent(),
+      action: () => this.#session.consent(this.#study.language),
       on_load: noTabStop,
       on_finish,
     };

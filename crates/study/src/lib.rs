@@ -5,6 +5,7 @@
 mod conduct;
 mod definition;
 mod fields;
+mod languages;
 mod parse;
 mod problems;
 
@@ -25,6 +26,7 @@ pub use definition::{
     Block, Completion, Condition, Direction, GUESS, Item, Kind, Psychometric, Screening, StudyDefinition,
     Texts,
 };
+pub use languages::Translation;
 pub use plan::{Decision, Procedures, Trial, TrialPlan, next_trials};
 pub use problems::{Problem, StudyErrors};
 pub use trials::TrialKind;

@@ -28,6 +28,7 @@ consent-minutes =
     }
 consent-print = طباعة هذه الصفحة
 consent-decline = إذا كنت لا ترغب في المشاركة فأغلق هذه الصفحة: لم يُخزَّن أي شيء.
+language-switch = اللغة
 consent-agree = أوافق وأشارك
 
 # التعليمات

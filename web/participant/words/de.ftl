@@ -26,6 +26,7 @@ consent-minutes =
     }
 consent-print = Diese Seite drucken
 consent-decline = Wenn Sie lieber nicht teilnehmen möchten, schließen Sie diese Seite: Es wurde nichts gespeichert.
+language-switch = Sprache
 consent-agree = Ich willige ein und nehme teil
 
 # Anleitung

@@ -26,6 +26,7 @@ consent-minutes =
     }
 consent-print = Print this page
 consent-decline = If you would rather not take part, close this page: nothing has been stored.
+language-switch = Language
 consent-agree = I agree and take part
 
 # Instructions
