@@ -8,6 +8,7 @@ import { mkdir, readFile, readdir, rm, writeFile } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
+import { target } from "./browsers.mjs";
 
 const root = dirname(fileURLToPath(import.meta.url));
 const out = resolve(process.argv[2] ?? process.env.KELIR_WEB_OUT ?? join(root, "node_modules/.kelir/dist"));
@@ -24,7 +25,7 @@ const { metafile } = await build({
   bundle: true,
   minify: true,
   format: "esm",
-  target: ["es2022", "chrome100", "firefox100", "safari15.4"],
+  target,
   charset: "utf8",
   legalComments: "none", // the notices are in licenses.txt
   loader: { ".svg": "copy", ".ftl": "text" },

@@ -51,7 +51,7 @@ pub struct Given {
     pub chose_target: bool,
     /// Whether the stimulus was chosen that stood first: on the left, or in the first interval.
     pub chose_first: bool,
-    /// Response time in ms.
+    /// Response time in ms; NaN where it is not known.
     pub rt_ms: f64,
 }
 

@@ -11,7 +11,7 @@ use crate::extract::{Body, Object, Parameters, Participant, Query};
 use crate::making::StimulusMap;
 use crate::password::{random_code, random_token};
 use axum::extract::State;
-use axum::http::StatusCode;
+use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{
     Appended, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session, SessionKind,
     StimulusHashes, sha256_hex,
@@ -54,6 +54,7 @@ refusals!(NotCreated: NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJs
 pub(crate) async fn create_session(
     State(app): State<Arc<App>>,
     Parameters(StudyPath { study }): Parameters<StudyPath>,
+    headers: HeaderMap,
     Body(new): Body<NewSession>,
 ) -> Result<(StatusCode, Fresh<CreatedSession>), Box<Problem>> {
     let loaded = app.study(&study)?;
@@ -69,7 +70,7 @@ pub(crate) async fn create_session(
         kind: SessionKind::Participant,
         flags: Vec::new(),
         start_key: None,
-        user_agent: None,
+        user_agent: user_agent(&headers),
         params: params.into_iter().collect(),
         display: new.display.unwrap_or_default().into(),
         idle: loaded.idle(),
@@ -82,6 +83,13 @@ pub(crate) async fn create_session(
     let session = app.store.create_session(new, plan).await?;
     let state = state_of(&app, &session).await?;
     Ok((StatusCode::CREATED, Fresh(CreatedSession { state, token })))
+}
+
+/// What the browser calls itself, at most 512 characters of it.
+fn user_agent(headers: &HeaderMap) -> Option<String> {
+    let sent = String::from_utf8_lossy(headers.get(header::USER_AGENT)?.as_bytes());
+    Some(sent.chars().filter(|c| !c.is_control()).take(512).collect())
+        .filter(|name: &String| !name.is_empty())
 }
 
 /// Trials with their stimuli filled in.
@@ -138,8 +146,8 @@ refusals!(NotStored: Unauthorized, NotFound, InvalidParameter, BadBody, BadJson,
 
 /// Answer a trial. The same answer may be sent again; another one is refused, and the first one stands.
 ///
-/// What the trial's kind asks for is held to its rules; keys beside it are kept as they come. An acknowledgement means that the answer is
-/// on disk.
+/// Only the choice is asked of an answer: whatever else is in it is kept as it comes, and what breaks a rule of the schema is named in the
+/// responses' `flags` and stands in no other column. An acknowledgement means that the answer is on disk.
 #[utoipa::path(
     put, path = "/api/v1/sessions/{session}/trials/{trial_index}", tag = "participants", security(("session" = [])),
     params(TrialPath, Known), request_body = Answer,
@@ -187,6 +195,22 @@ pub(crate) async fn put_answer(
     }
     let next_trial = app.store.next_trial(&session.session_id).await?;
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
+}
+
+/// Answer a trial, where what lies between browser and server lets no PUT pass: the same as PUT.
+#[utoipa::path(
+    post, path = "/api/v1/sessions/{session}/trials/{trial_index}", tag = "participants", security(("session" = [])),
+    params(TrialPath, Known), request_body = Answer,
+    responses((status = OK, description = "It is stored.", body = Acknowledgement), NotStored)
+)]
+pub(crate) async fn post_answer(
+    participant: Participant,
+    app: State<Arc<App>>,
+    address: Parameters<TrialPath>,
+    known: Query<Known>,
+    body: Object,
+) -> Answered<Acknowledgement> {
+    put_answer(participant, app, address, known, body).await
 }
 
 /// What follows in a session from what it was shown and answered.
