@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 29bdfcbdb8ce58225a8d791555108df2606195c108a23ef5cdd28775ab1f4b20 a0e1569b9f6ae81577c8c8f2f9b8da7aae93a9aac3e54b7ee3fe44b0d9664edc
+// Generated from openapi.json by `npm run types`; do not edit. 68b1606b09f1818fc8123e8297bfba588e008b90e9ba593a02ad94edcfc2c839 b4f1dba3d21a5e7d0d7bbadb671c2586dd56578cfaba5fe3b53dc1dca7a2703e
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -1373,7 +1373,7 @@ export interface components {
         Model: "thurstone" | "bradley-terry";
         /** @description What is known of someone who begins. */
         NewSession: {
-            /** @description What the browser says about its display; kept as it comes. */
+            /** @description What the browser says about its display; kept as it comes. `language` is the one in which the study is read. */
             display?: {
                 [key: string]: unknown;
             } | null;
@@ -1857,6 +1857,8 @@ export interface components {
             completion_code?: string;
             /** @description Whether consent has been given. */
             consented: boolean;
+            /** @description The language in which it is taken: the `language` of the display that it began with where the study has it, else the study's own. */
+            language: string;
             /** @description Whether more trials will be decided, from the answers to these. */
             more: boolean;
             /** @description Most trials there can be. */
@@ -2027,6 +2029,8 @@ export interface components {
             estimated_minutes: number;
             /** @description Its id, as in addresses. */
             id: string;
+            /** @description The language of title, question and texts (BCP 47). */
+            language: string;
             /** @description Whether each visit is somebody else's, as on a laboratory's computer. */
             per_visit: boolean;
             /** @description The question over every trial. */
@@ -2044,6 +2048,10 @@ export interface components {
             texts: components["schemas"]["Texts"];
             /** @description Title. */
             title: string;
+            /** @description The same in other languages, by tag. */
+            translations: {
+                [key: string]: components["schemas"]["Translation"];
+            };
             /** @description Kinds of trial, in the order of first use. */
             trial_kinds: components["schemas"]["TrialName"][];
         };
@@ -2074,6 +2082,8 @@ export interface components {
              * @description A session without a sign of life for this long gives its slot to someone else, in minutes.
              */
             idle_minutes: number;
+            /** @description The language of its texts, as a BCP 47 tag. */
+            language?: string;
             /** @description The question over every pair. */
             question: string;
             /** @description When an input counts as a response, as far as the file says so. */
@@ -2098,6 +2108,10 @@ export interface components {
             texts: components["schemas"]["Texts"];
             /** @description Title for participants and researchers. */
             title: string;
+            /** @description What participants read in other languages, by tag. */
+            translations?: {
+                [key: string]: components["schemas"]["Translation"];
+            };
         };
         /** @description One page of the studies. */
         StudyList: {
@@ -2402,6 +2416,15 @@ export interface components {
                  */
                 target: number;
             };
+        };
+        /** @description What participants read of a study, in another language than its own. */
+        Translation: {
+            /** @description The question over every trial. */
+            question: string;
+            /** @description What participants read. */
+            texts: components["schemas"]["Texts"];
+            /** @description Title. */
+            title: string;
         };
         /** @description Circular triads (a over b, b over c, c over a), summed over observers. */
         Triads: {

@@ -70,6 +70,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     session_id: s.id,
     study_id: study.id,
     study: found(),
+    language: Object.hasOwn(study.translations, String(s.body.display?.language)) ? String(s.body.display?.language) : study.language,
     status: s.code ? "completed" : s.consented ? "in_progress" : "consent",
     consented: s.consented,
     trials: s.consented ? decided(s) : [],
