@@ -4,12 +4,13 @@ import * as api from "./api.ts";
 import { choose, inLanguage } from "./language.ts";
 import { inkOn, srgbCode } from "./layout.ts";
 import { notice, persist } from "./notice.ts";
-import { action, askToTakeOver, display, Ended, lastPage } from "./pages.ts";
+import { action, display, Ended, lastPage } from "./pages.ts";
 import { Session } from "./session.ts";
 import { Unusable } from "./stimuli.ts";
 import { openStore, sessionKey } from "./storage.ts";
 import { openTabs } from "./tabs.ts";
 import { Visit } from "./visit.ts";
+import { settle, Tab } from "./whose.ts";
 import { speak, spoken, words } from "./words/index.ts";
 import "./style.css";
 
@@ -39,38 +40,54 @@ async function start(): Promise<void> {
     return lastPage(words("no-study-title"), [words("no-study")]);
   }
   study = dressed(study, choose(study, query.get("lang"), navigator.languages));
-  if (elsewhere) await askToTakeOver();
+  const store = openStore(() => localStorage);
+  session = new Session(study.id, key, params, store);
+  const tab = new Tab(key, openStore(() => sessionStorage));
+  await settle(session, tab, study.per_visit, elsewhere);
   tabs.claim();
-  session = new Session(study.id, key, params, openStore(() => localStorage));
-  await session.resume();
-  if (session.state !== null) {
-    // A session keeps the texts and the question that it began with.
-    study = dressed(session.state.study, session.state.language);
-  }
-  if (session.state?.status !== "completed") session.rescue();
-  await new Visit(study, session).run();
+  session.resume();
+  if (session.state !== null) tab.has(session.id);
+  // A page that is brought back as it was may be of long ago: the server's word counts.
+  addEventListener("pageshow", ({ persisted }) => persisted && store.durable && location.reload());
+  // A session keeps the texts and the question that it began with.
+  if (session.state !== null) study = dressed(session.state.study, session.state.language);
+  session.rescue();
+  await new Visit(study, session, tab).run();
 }
 
 /** The study as it reads in a language; the page speaks that, too. */
 function dressed(study: api.Study, language: string): api.Study {
   const read = inLanguage(study, language);
   speak(language);
-  document.title = read.title;
-  dress(read.surround);
+  dress(read);
   return read;
 }
 
-/** Sets the grey that surrounds everything, and an ink that can be read on it. */
-function dress(surround: number): void {
+/** Gives the page its title, the grey that surrounds everything, and an ink that can be read on it. */
+function dress({ title, surround }: api.Study): void {
+  document.title = title;
   const code = srgbCode(surround);
   document.documentElement.style.setProperty("--surround", `rgb(${code} ${code} ${code})`);
   document.documentElement.dataset.ink = inkOn(surround);
 }
 
-start().catch((error: unknown) => {
+/** The end of a visit that can't go on, with what to do. */
+function stop(error: unknown): void {
   console.error(error);
   const again = action(words("reload"), () => location.reload());
   if (error instanceof Ended) return lastPage(error.heading, error.texts, again);
   const known = error instanceof Refused || error instanceof Unusable ? error.message : words("stopped");
   lastPage(words("stopped-title"), [`${known} ${words("kept")}`], again);
-});
+}
+
+/** Whether an error is this page's own, and none of an extension's. */
+const isOurs = (error: unknown) => (error instanceof TypeError || error instanceof ReferenceError) && (error.stack ?? "").includes("/assets/participant");
+
+if (document.documentElement.dataset.refused === undefined) {
+  document.documentElement.dataset.started = "";
+  document.getElementById("boot")?.remove();
+  // What fails where nobody waits for it, such as a function that a browser lacks, would leave the page standing without a word.
+  addEventListener("error", ({ error }) => isOurs(error) && stop(error));
+  addEventListener("unhandledrejection", ({ reason }) => isOurs(reason) && stop(reason));
+  start().catch(stop);
+}

@@ -1,6 +1,7 @@
 /** The pages of text: what they say, and what can be done there. */
 import { h, paragraphs } from "../shared/dom.ts";
 import type { Completion, Study } from "./api.ts";
+import { copied } from "./copy.ts";
 import { languages } from "./language.ts";
 import { linkedParagraphs } from "./links.ts";
 import { showPage } from "./text-page.ts";
@@ -101,27 +102,20 @@ export function askAgain(screen: HTMLElement, refused: readonly string[], sessio
   return new Promise((resolve) => showPage(screen, words("missing-title"), content, action(words("try-again"), resolve)));
 }
 
-/** Asks whether to go on here, where another tab has the study open. */
-export function askToTakeOver(): Promise<void> {
-  return new Promise((resolve) => {
-    lastPage(words("elsewhere-title"), [words("elsewhere")], action(words("elsewhere-continue"), resolve));
-  });
-}
-
 function copyButton(text: string): HTMLButtonElement {
   const button = h("button", { type: "button", class: "action" }, words("code-copy"));
-  button.addEventListener("click", () => {
-    void navigator.clipboard?.writeText(text).then(
-      () => (button.textContent = words("code-copied")),
-      () => (button.textContent = words("code-select")),
-    );
+  button.addEventListener("click", async () => {
+    button.textContent = words((await copied(text)) ? "code-copied" : "code-select");
   });
   return button;
 }
 
 /** A panel's return address, if it is a web address at all. */
 function safeRedirect(redirect: string | null | undefined): URL | null {
-  if (redirect === null || redirect === undefined || !URL.canParse(redirect)) return null;
-  const url = new URL(redirect);
-  return url.protocol === "https:" || url.protocol === "http:" ? url : null;
+  try {
+    const url = new URL(redirect ?? "");
+    return url.protocol === "https:" || url.protocol === "http:" ? url : null;
+  } catch {
+    return null;
+  }
 }

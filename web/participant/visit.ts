@@ -13,6 +13,7 @@ import { openLoader, type Pictures, Unusable } from "./stimuli.ts";
 import TextPage, { showPage } from "./text-page.ts";
 import { loadKind, UnknownKind } from "./trials/kinds.ts";
 import type { TrialModule } from "./trials/module.ts";
+import { offerNext, type Tab } from "./whose.ts";
 import { words } from "./words/index.ts";
 
 type TimelineArray = Extract<Parameters<JsPsych["run"]>[0], unknown[]>;
@@ -25,6 +26,7 @@ const PATIENCE_MS = 400;
 export class Visit {
   readonly #found: Study;
   readonly #session: Session;
+  readonly #tab: Tab;
   readonly #jsPsych = initJsPsych({ display_element: display });
   readonly #loader = openLoader((waiting) =>
     say("pictures", waiting ? words("pictures-slow") : null),
@@ -32,9 +34,10 @@ export class Visit {
   #refresh: Promise<number | null> | null = null;
   #instructed = false;
 
-  constructor(study: Study, session: Session) {
+  constructor(study: Study, session: Session, tab: Tab) {
     this.#found = study;
     this.#session = session;
+    this.#tab = tab;
   }
 
   /** The study as it was when the session began, in its language; before that, as it is now. */
@@ -62,7 +65,9 @@ export class Visit {
   async #next(kinds: readonly TrialModule[], on_finish: () => Promise<void>): Promise<Node | null> {
     if (this.#session.state?.consented !== true) return this.#consent(on_finish);
     if (!this.#instructed && !this.#session.begun) return this.#instructions(kinds, on_finish);
-    const trial = this.#session.remaining[0] ?? (await this.#decided());
+    this.#known();
+    this.#session.takeAgain();
+    const trial = this.#session.remaining[0] ?? (await this.#left());
     return trial === null ? null : this.#trial(trial, await this.#kindFor(trial), on_finish);
   }
 
@@ -73,7 +78,10 @@ export class Visit {
       content: () => consentContent(this.#study, this.#session.state === null),
       button: words("consent-agree"),
       testid: "consent-agree",
-      action: () => this.#session.consent(this.#study.language),
+      action: async () => {
+        await this.#session.consent(this.#study.language);
+        this.#tab.has(this.#session.id);
+      },
       on_load: noTabStop,
       on_finish,
     };
@@ -137,26 +145,34 @@ export class Visit {
     return kindOf(trial.trial);
   }
 
-  /** A trial that the server decides on from the answers, once it has them all; null when there are no more. */
-  async #decided(): Promise<Trial | null> {
-    if (this.#session.state?.more !== true) return null;
+  /**
+   * A trial that is left once every answer has been sent: one to be taken again, or one that the server decides on from the answers;
+   * null when all is answered.
+   */
+  async #left(): Promise<Trial | null> {
     const screen = this.#jsPsych.getDisplayElement() ?? cleared();
-    const waiting: Patience = { screen, heading: words("deciding-title"), sentence: words("deciding") };
-    await this.#stored(waiting);
-    await patiently(waiting, this.#session.grown());
+    const deciding = { screen, heading: words("deciding-title"), sentence: words("deciding") };
+    await this.#stored(this.#session.state?.more === true ? deciding : finishing(screen));
+    await patiently(deciding, this.#session.grown());
     screen.replaceChildren();
     return this.#session.remaining[0] ?? null;
   }
 
-  /** Resolves when every answer is stored; one that is refused for good is said, and tried again as often as one likes. */
+  /** Resolves when every answer is stored or its trial is to be taken again; one that is refused for good is said, and tried again as often as one likes. */
   async #stored(waiting: Patience): Promise<void> {
     for (;;) {
       await patiently(waiting, this.#session.settled());
+      this.#known();
       const refused = this.#session.outbox.refused.map((entry) => entry.refused ?? "");
-      if (refused.length === 0) return;
+      if (refused.length === 0 || this.#session.takeAgain()) return;
       await askAgain(waiting.screen, refused, this.#session.id);
       await this.#session.outbox.retryRefused();
     }
+  }
+
+  /** Ends the visit where the server does not know the session any more: a reload begins anew. */
+  #known(): void {
+    if (this.#session.gone) throw new Ended(words("gone-title"), [words("gone")]);
   }
 
   /** A trial's pictures; says so when they are long in coming, for the screen is empty until then. */
@@ -177,10 +193,11 @@ export class Visit {
   /** Waits until every answer is stored, then asks for the code: it exists only then. */
   async #finish(): Promise<void> {
     const screen = cleared();
-    const waiting: Patience = { screen, heading: words("finishing-title"), sentence: words("finishing") };
+    const waiting = finishing(screen);
     try {
       await this.#stored(waiting);
       showThanks(screen, this.#study, await patiently(waiting, this.#session.complete()));
+      if (this.#found.per_visit) offerNext(screen, this.#session, this.#tab);
     } catch (error) {
       if (!(error instanceof Refused) || error.code !== "incomplete") throw error;
       // The server misses a trial that we believed stored. Its word counts: where its plan shows the gap, a reload asks again.
@@ -197,6 +214,8 @@ interface Patience {
   heading: string;
   sentence: string;
 }
+
+const finishing = (screen: HTMLElement): Patience => ({ screen, heading: words("finishing-title"), sentence: words("finishing") });
 
 /** Says what is waited for, where it takes longer than a moment. */
 async function patiently<T>({ screen, heading, sentence }: Patience, work: Promise<T>): Promise<T> {

@@ -1,6 +1,5 @@
 // What the oldest browsers have not, by name, from MDN's table of browsers (`@mdn/browser-compat-data`).
 import { createRequire } from "node:module";
-import { oldest } from "../browsers.mjs";
 
 interface Entry {
   __compat?: { support: Record<string, Support | Support[]> };
@@ -13,7 +12,10 @@ interface Support {
   alternative_name?: string;
 }
 
-const data = createRequire(import.meta.url)("@mdn/browser-compat-data") as { api: Entry; javascript: { builtins: Entry } };
+const require = createRequire(import.meta.url);
+/** The oldest browsers that the pages are made for. */
+export const oldest = require("../browsers.json") as { Safari: string; Firefox: string; Chrome: string };
+const data = require("@mdn/browser-compat-data") as { api: Entry; javascript: { builtins: Entry } };
 
 const number = (version: string) => {
   const [major = 0, minor = 0] = version.replace("≤", "").split(".").map(Number);
@@ -22,7 +24,7 @@ const number = (version: string) => {
 
 /** Whether each of the oldest browsers has it, by its own name and without a switch. */
 function everywhere({ __compat }: Entry): boolean {
-  return Object.entries({ ...oldest, Safari_iOS: oldest.Safari }).every(([browser, version]) => {
+  return Object.entries({ ...oldest, Safari_iOS: oldest.Safari }).every(([browser, version]: [string, string]) => {
     const support = __compat?.support[browser.toLowerCase()] ?? [];
     return [support].flat().some(({ version_added: added, flags, prefix, alternative_name: other }) => typeof added === "string" && added !== "preview" && !flags && !prefix && !other && number(added) <= number(version));
   });

@@ -1,6 +1,10 @@
 //! The table of responses: one tidy row a trial. What each column is, is said by the records here and by the answers of each kind of trial;
 //! the codebook, the header and the cells are made from these.
 
+mod participants;
+
+pub use participants::{ParticipantColumns, participants_codebook};
+
 use crate::definition::{Block, Kind, StudyDefinition};
 use crate::plan::Trial;
 use crate::schema::{Column, Record, Sound, worded};
@@ -17,6 +21,12 @@ worded! {
         Completed = "completed",
         /// not finished
         InProgress = "in progress",
+    }
+}
+
+impl Default for SessionStatus {
+    fn default() -> SessionStatus {
+        SessionStatus::InProgress
     }
 }
 
@@ -44,6 +54,10 @@ pub struct SessionColumns {
     pub slot: u32,
     /// Seed of the session's trial plan.
     pub plan_seed: String,
+    /// 1 where the analysis counts the session's answers; else 0.
+    pub judged: u8,
+    /// Why it does not, where it has a reason.
+    pub reject_reason: Option<String>,
 }
 
 /// What a row says of its trial and answer, beside what the page sent.

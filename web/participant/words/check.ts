@@ -8,6 +8,8 @@ const files = (folder: URL, end: string) => readdirSync(folder, { recursive: tru
 
 const catalogues = Object.fromEntries(files(here, ".ftl").map((file) => [file.replace(".ftl", ""), read(readFileSync(new URL(file, here), "utf8"))]));
 const sources = files(participant, ".ts").filter((file) => !file.startsWith("words")).map((file) => readFileSync(new URL(file, participant), "utf8"));
+// What is said before the page is there is put into it as it is built.
+sources.push(readFileSync(new URL("../../build.mjs", import.meta.url), "utf8"));
 
 const found = faults(catalogues, sources.join("\n"));
 for (const fault of found) console.error(`web/participant/words: ${fault}`);

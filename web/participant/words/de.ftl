@@ -4,7 +4,7 @@
 kept = Ihre bisherigen Antworten sind gespeichert oder in diesem Browser aufbewahrt; nach dem Neuladen geht es dort weiter.
 reload = Seite neu laden
 stopped-title = Die Studie wurde unterbrochen
-stopped = Auf dieser Seite ist etwas schiefgegangen.
+stopped = Auf dieser Seite ist etwas schiefgegangen. Hilft Neuladen nicht, öffnen Sie den Link bitte in einem anderen Browser.
 no-study-title = Diese Studie gibt es nicht
 no-study = Bitte prüfen Sie den Link, den Sie bekommen haben, oder fragen Sie die Person, die ihn Ihnen geschickt hat.
 moved-title = In einem anderen Tab fortgesetzt
@@ -91,3 +91,20 @@ code-copied = Kopiert
 code-select = Bitte markieren Sie den Code und kopieren Sie ihn
 about-title = Worum es in dieser Studie geht
 return-to = Zurück zu { $host }
+
+# Wessen Besuch es ist
+begun-title = Willkommen zurück
+begun = Diese Studie wurde in diesem Browser begonnen und ist noch nicht beendet.
+begun-continue = Ich habe sie begonnen: weiter
+someone-else = Ich bin jemand anderes
+someone-else-note = Wenn es jemand anderes war, beginnen Sie neu: Die bisherigen Antworten bleiben der anderen Person.
+next-person = Zurück zum Anfang, für die nächste Person
+gone-title = Diese Sitzung ist beendet
+gone = Der Server kennt diese Sitzung nicht mehr. Bitte laden Sie die Seite neu, um von vorn zu beginnen, oder sagen Sie es der Person, die Ihnen den Link geschickt hat.
+
+# Netze und alte Browser
+line-foreign = Etwas zwischen diesem Browser und der Studie antwortet an ihrer Stelle, etwa die Anmeldeseite eines Netzes. Nichts geht verloren: Diese Seite macht von selbst weiter, sobald es weg ist.
+answer-again = Eine Antwort konnte nicht gespeichert werden, deshalb sind ihre Bilder noch einmal da. Bitte wählen Sie erneut.
+too-old = Dieser Browser ist zu alt für diese Studie. Bitte öffnen Sie den Link in einem neueren: { $browsers } oder später.
+not-loaded = Diese Seite konnte nicht vollständig geladen werden. Bitte prüfen Sie die Verbindung und laden Sie sie neu.
+no-script = Diese Studie braucht JavaScript. Bitte schalten Sie es für diese Seite ein, oder öffnen Sie den Link in einem anderen Browser.

@@ -4,7 +4,7 @@
 kept = Answers you have given are stored or kept in this browser; reloading goes on from there.
 reload = Reload the page
 stopped-title = The study has stopped
-stopped = Something in this page went wrong.
+stopped = Something in this page went wrong. If reloading does not help, please open the link in another browser.
 no-study-title = There is no such study
 no-study = Please check the link you were given, or ask the person who sent it to you.
 moved-title = Continued in another tab
@@ -91,3 +91,20 @@ code-copied = Copied
 code-select = Please select the code and copy it
 about-title = What this study is about
 return-to = Return to { $host }
+
+# Whose visit it is
+begun-title = Welcome back
+begun = This study was begun in this browser and is not finished.
+begun-continue = I began it: go on
+someone-else = I am someone else
+someone-else-note = If that was someone else, begin anew: what they have answered stays theirs.
+next-person = Back to the start, for the next person
+gone-title = This session has ended
+gone = The server does not know this session any more. Please reload the page to begin anew, or tell the person who sent you the link.
+
+# Networks and old browsers
+line-foreign = Something between this browser and the study answers in its place, such as the sign-in page of a network. Nothing is lost: this page goes on by itself when it is gone.
+answer-again = An answer could not be stored, so its pictures are here once more. Please choose again.
+too-old = This browser is too old for this study. Please open the link in a newer one: { $browsers }, or later.
+not-loaded = This page could not be loaded in full. Please check the connection and reload it.
+no-script = This study needs JavaScript. Please switch it on for this page, or open the link in another browser.
