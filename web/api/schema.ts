@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 68b1606b09f1818fc8123e8297bfba588e008b90e9ba593a02ad94edcfc2c839 b4f1dba3d21a5e7d0d7bbadb671c2586dd56578cfaba5fe3b53dc1dca7a2703e
+// Generated from openapi.json by `npm run types`; do not edit. 99647e9698138510de30362cb858c7136ee1c42caa2e4e6b25ac88f79a14c0a8 9bd5b5cf8e19dc052b62c906ff9666e7d86403bdc4c862a983d2a4ddcc0f30a2
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -1863,6 +1863,8 @@ export interface components {
             more: boolean;
             /** @description Most trials there can be. */
             most_trials: number;
+            /** @description Whether the link named the participant: who comes by it again is the same person. */
+            named: boolean;
             /**
              * Format: int32
              * @description The first decided trial without an answer; null when there is none.
