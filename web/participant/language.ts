@@ -16,7 +16,12 @@ export function choose(study: Pick<Study, "language" | "translations">, asked: s
   return study.language;
 }
 
+/** A study with its words in the language in which it is read. */
+export interface Reading extends Study {
+  reading: string;
+}
+
 /** The study as it is read in a language. */
-export const inLanguage = (study: Study, language: string): Study => ({ ...study, ...(Object.hasOwn(study.translations, language) ? study.translations[language] : {}) });
+export const inLanguage = (study: Study, language: string): Reading => ({ ...study, ...(Object.hasOwn(study.translations, language) ? study.translations[language] : {}), reading: language });
 
 const primary = (tag: string) => tag.split("-")[0]?.toLowerCase();

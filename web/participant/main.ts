@@ -1,7 +1,7 @@
 /** The participant's page: one study, from consent to the completion code. */
 import { Refused } from "../shared/http.ts";
 import * as api from "./api.ts";
-import { choose, inLanguage } from "./language.ts";
+import { choose, inLanguage, type Reading } from "./language.ts";
 import { inkOn, srgbCode } from "./layout.ts";
 import { notice, persist } from "./notice.ts";
 import { action, display, Ended, lastPage } from "./pages.ts";
@@ -39,7 +39,7 @@ async function start(): Promise<void> {
     if (!(error instanceof Refused) || error.status !== 404) throw error;
     return lastPage(words("no-study-title"), [words("no-study")]);
   }
-  study = dressed(study, choose(study, query.get("lang"), navigator.languages));
+  let read = dressed(study, choose(study, query.get("lang"), navigator.languages));
   const store = openStore(() => localStorage);
   session = new Session(study.id, key, params, store);
   const tab = new Tab(key, openStore(() => sessionStorage));
@@ -50,13 +50,13 @@ async function start(): Promise<void> {
   // A page that is brought back as it was may be of long ago: the server's word counts.
   addEventListener("pageshow", ({ persisted }) => persisted && store.durable && location.reload());
   // A session keeps the texts and the question that it began with.
-  if (session.state !== null) study = dressed(session.state.study, session.state.language);
+  if (session.state !== null) read = dressed(session.state.study, session.state.language);
   session.rescue();
-  await new Visit(study, session, tab).run();
+  await new Visit(read, session, tab).run();
 }
 
 /** The study as it reads in a language; the page speaks that, too. */
-function dressed(study: api.Study, language: string): api.Study {
+function dressed(study: api.Study, language: string): Reading {
   const read = inLanguage(study, language);
   speak(language);
   dress(read);

@@ -2,7 +2,7 @@
 import { h, paragraphs } from "../shared/dom.ts";
 import type { Completion, Study } from "./api.ts";
 import { copied } from "./copy.ts";
-import { languages } from "./language.ts";
+import { languages, type Reading } from "./language.ts";
 import { linkedParagraphs } from "./links.ts";
 import { showPage } from "./text-page.ts";
 import type { Legend } from "./trials/module.ts";
@@ -37,7 +37,7 @@ export function action(label: string, onclick: () => void): HTMLButtonElement {
 }
 
 /** What taking part means; where the language may still be chosen, in which. */
-export function consentContent(study: Study, choosing: boolean): Node[] {
+export function consentContent(study: Reading, choosing: boolean): Node[] {
   const { texts, estimated_minutes } = study;
   const print_ = h("button", { type: "button", class: "link", onclick: () => print() }, words("consent-print"));
   return [
@@ -51,14 +51,14 @@ export function consentContent(study: Study, choosing: boolean): Node[] {
 }
 
 /** The study's languages, as links to itself; none where there is one. */
-function languageSwitch(study: Study): Node[] {
+function languageSwitch(study: Reading): Node[] {
   const all = languages(study);
   if (all.length < 2) return [];
   const link = (language: string) => {
     const query = new URLSearchParams(location.search);
     query.set("lang", language);
     const name = new Intl.DisplayNames([language], { type: "language" }).of(language) ?? language;
-    const current = document.documentElement.lang === language ? "true" : null;
+    const current = study.reading === language ? "true" : null;
     return h("a", { class: "link", href: `?${query}`, lang: language, hreflang: language, dir: direction(language), "aria-current": current }, name);
   };
   return [h("nav", { class: "languages", "aria-label": words("language-switch") }, ...all.map(link))];

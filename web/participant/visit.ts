@@ -4,7 +4,7 @@ import { h, paragraphs } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
 import type { Study, Trial } from "./api.ts";
 import { measureRefresh } from "./display.ts";
-import { inLanguage } from "./language.ts";
+import { inLanguage, type Reading } from "./language.ts";
 import { say } from "./notice.ts";
 import { askAgain, consentContent, display, Ended, instructionsContent, showThanks } from "./pages.ts";
 import { position } from "./plan.ts";
@@ -24,7 +24,7 @@ type Node = Record<string, unknown> & { on_finish: () => Promise<void> };
 const PATIENCE_MS = 400;
 
 export class Visit {
-  readonly #found: Study;
+  readonly #found: Reading;
   readonly #session: Session;
   readonly #tab: Tab;
   readonly #jsPsych = initJsPsych({ display_element: display });
@@ -34,14 +34,14 @@ export class Visit {
   #refresh: Promise<number | null> | null = null;
   #instructed = false;
 
-  constructor(study: Study, session: Session, tab: Tab) {
+  constructor(study: Reading, session: Session, tab: Tab) {
     this.#found = study;
     this.#session = session;
     this.#tab = tab;
   }
 
   /** The study as it was when the session began, in its language; before that, as it is now. */
-  get #study(): Study {
+  get #study(): Reading {
     const { state } = this.#session;
     return state === null ? this.#found : inLanguage(state.study, state.language);
   }
@@ -79,7 +79,7 @@ export class Visit {
       button: words("consent-agree"),
       testid: "consent-agree",
       action: async () => {
-        await this.#session.consent(this.#study.language);
+        await this.#session.consent(this.#study.reading);
         this.#tab.has(this.#session.id);
       },
       on_load: noTabStop,

@@ -49,6 +49,8 @@ export interface Options {
   grow?: { start: number; most: number } | null;
   /** Each visit is somebody else's. */
   perVisit?: boolean;
+  /** Texts in place of the study's, in every language. */
+  texts?: Partial<Study["texts"]>;
 }
 
 export const problem = (status: number, code: Schemas["ProblemCode"], detail: string, more: Partial<Schemas["Problem"]> = {}): Reply => {
@@ -56,12 +58,14 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, perVisit = false }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, perVisit = false, texts = {} }: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
 
-  const found = (): Study => ({ ...study, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
+  const worded = <T extends Pick<Study, "texts">>(told: T): T => ({ ...told, texts: { ...told.texts, ...texts } });
+  const translations = Object.fromEntries(Object.entries(study.translations).map(([language, told]) => [language, worded(told)]));
+  const found = (): Study => ({ ...worded(study), translations, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
     return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));

@@ -45,9 +45,9 @@ export const visits = {
       await v.hook("start").waitFor();
       const second = await v.context.newPage();
       await second.goto(v.url);
-      await second.getByRole("button").waitFor();
+      await second.getByRole("button").first().waitFor();
       await look("elsewhere", second);
-      await second.getByRole("button").click();
+      await second.getByRole("button").first().click();
       await v.page.bringToFront();
       await v.page.locator('main:not(:has([data-testid="start"]))').waitFor();
       await look("moved");
