@@ -9,6 +9,7 @@ import { Session } from "./session.ts";
 import { Unusable } from "./stimuli.ts";
 import { openStore, sessionKey } from "./storage.ts";
 import { openTabs } from "./tabs.ts";
+import { showRibbon, visitOf } from "./trying.ts";
 import { Visit } from "./visit.ts";
 import { settle, Tab } from "./whose.ts";
 import { speak, spoken, words } from "./words/index.ts";
@@ -19,13 +20,15 @@ speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
 const query = new URLSearchParams(location.search);
-/** What the link says of the participant, within what the server takes; `lang` is the page's own. */
+/** What the link says of the participant, within what the server takes; an id that is too long stays so, and is refused aloud. `lang` is the page's own. */
 const params = Object.fromEntries(
-  [...query].filter(([name, value]) => name !== "lang" && new Blob([name]).size <= 64 && new Blob([value]).size <= 512).slice(0, 64),
+  [...query].filter(([name]) => name !== "lang" && [...name].length <= 64).map(([name, value]) => [name, [...value].slice(0, 1024).join("")]).slice(0, 64),
 );
 
 async function start(): Promise<void> {
-  const key = sessionKey(studyId, params);
+  const visit = await visitOf(studyId);
+  const kept = visit !== "preview";
+  const key = kept ? sessionKey(studyId, params) : `kelir:preview:${crypto.getRandomValues(new Uint32Array(2)).join("-")}`;
   let session: Session | null = null;
   const tabs = openTabs(key, () => {
     session?.stop();
@@ -40,9 +43,10 @@ async function start(): Promise<void> {
     return lastPage(words("no-study-title"), [words("no-study")]);
   }
   let read = dressed(study, choose(study, query.get("lang"), navigator.languages));
-  const store = openStore(() => localStorage);
+  showRibbon(visit);
+  const store = openStore(() => (kept ? localStorage : memoryOnly()));
   session = new Session(study.id, key, params, store);
-  const tab = new Tab(key, openStore(() => sessionStorage));
+  const tab = new Tab(key, openStore(() => (kept ? sessionStorage : memoryOnly())));
   await settle(session, tab, study.per_visit, elsewhere);
   tabs.claim();
   session.resume();
@@ -63,6 +67,11 @@ function dressed(study: api.Study, language: string): Reading {
   return read;
 }
 
+/** In place of a storage: a preview leaves nothing behind. */
+function memoryOnly(): Storage {
+  throw new Error("a preview keeps nothing");
+}
+
 /** Gives the page its title, the grey that surrounds everything, and an ink that can be read on it. */
 function dress({ title, surround }: api.Study): void {
   document.title = title;
@@ -75,6 +84,7 @@ function dress({ title, surround }: api.Study): void {
 function stop(error: unknown): void {
   console.error(error);
   const again = action(words("reload"), () => location.reload());
+  if (error instanceof Refused && error.code === "link_refused") return lastPage(words("link-title"), [error.message]);
   if (error instanceof Ended) return lastPage(error.heading, error.texts, again);
   const known = error instanceof Refused || error instanceof Unusable ? error.message : words("stopped");
   lastPage(words("stopped-title"), [`${known} ${words("kept")}`], again);

@@ -3,9 +3,10 @@ import { h, paragraphs } from "../shared/dom.ts";
 import type { Completion, Study } from "./api.ts";
 import { copied } from "./copy.ts";
 import { languages, type Reading } from "./language.ts";
+import { legendsContent } from "./legend.ts";
 import { linkedParagraphs } from "./links.ts";
 import { showPage } from "./text-page.ts";
-import type { Legend } from "./trials/module.ts";
+import type { TrialModule } from "./trials/module.ts";
 import { direction, words } from "./words/index.ts";
 
 /** Where everything but `notice` is shown. */
@@ -64,18 +65,9 @@ function languageSwitch(study: Reading): Node[] {
   return [h("nav", { class: "languages", "aria-label": words("language-switch") }, ...all.map(link))];
 }
 
-/** The study's instructions, and the keys of each of its kinds of trial, shown once. */
-export function instructionsContent({ texts }: Study, legends: readonly Legend[]): Node[] {
-  const several = legends.length > 1;
-  return [...linkedParagraphs(texts.instructions), ...legends.flatMap((legend) => [...(several ? [h("h2", { class: "kind" }, words(legend.title))] : []), keys(legend)])];
-}
-
-function keys({ answers }: Legend): HTMLElement {
-  const side = ({ keys, label }: Legend["answers"][number]) => {
-    const names = keys.flatMap((key, i) => [...(i > 0 ? [` ${words("key-or")} `] : []), h("kbd", {}, key)]);
-    return h("div", { class: "side" }, h("span", { class: "sketch", "aria-hidden": "true" }), h("span", {}, ...names, ` ${words(label)}`));
-  };
-  return h("div", { class: "keys" }, ...answers.map(side));
+/** The study's instructions, and how to answer each of its kinds of trial. */
+export function instructionsContent(study: Study, legends: readonly TrialModule["legend"][]): Node[] {
+  return [...linkedParagraphs(study.texts.instructions), legendsContent(study, legends)];
 }
 
 /** The last page of a visit that came to its end. */

@@ -2,7 +2,7 @@
 import { initJsPsych, type JsPsych } from "jspsych";
 import { h, paragraphs } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
-import type { Study, Trial } from "./api.ts";
+import type { Trial } from "./api.ts";
 import { measureRefresh } from "./display.ts";
 import { inLanguage, type Reading } from "./language.ts";
 import { say } from "./notice.ts";
@@ -12,7 +12,7 @@ import type { Session } from "./session.ts";
 import { openLoader, type Pictures, Unusable } from "./stimuli.ts";
 import TextPage, { showPage } from "./text-page.ts";
 import { loadKind, UnknownKind } from "./trials/kinds.ts";
-import type { TrialModule } from "./trials/module.ts";
+import { rulesOf, type TrialModule } from "./trials/module.ts";
 import { offerNext, type Tab } from "./whose.ts";
 import { words } from "./words/index.ts";
 
@@ -78,6 +78,7 @@ export class Visit {
       content: () => consentContent(this.#study, this.#session.state === null),
       button: words("consent-agree"),
       testid: "consent-agree",
+      rules: rulesOf(this.#study),
       action: async () => {
         await this.#session.consent(this.#study.reading);
         this.#tab.has(this.#session.id);
@@ -95,6 +96,7 @@ export class Visit {
       content: () => instructionsContent(this.#study, kinds.map((kind) => kind.legend)),
       button: words("instructions-start"),
       testid: "start",
+      rules: rulesOf(this.#study),
       on_load: () => {
         noTabStop();
         void this.#measure();

@@ -5,29 +5,36 @@
 
 pub mod api;
 mod app;
+mod check;
 mod error;
+mod events;
 mod export;
 mod extract;
 mod headers;
 mod library;
 mod limiter;
+pub mod links;
 mod making;
 mod participants;
 mod password;
 mod picture;
+mod previews;
 mod render;
 pub mod results;
 mod routes;
 mod selection;
 mod server;
+pub mod shipped;
 mod table;
 mod viewer;
 mod web;
 mod workbook;
 
+pub use check::check_study;
 pub use error::{StartError, StudyFileError};
+pub use events::events_table;
 pub use export::{codebook_csv, responses_csv, responses_table, spreadsheet};
-pub use library::{Library, check_study};
+pub use library::Library;
 pub use making::{Made, Maker, Making, Task};
 pub use participants::participants_table;
 pub use render::RenderMaker;

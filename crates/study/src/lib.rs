@@ -8,6 +8,8 @@ mod fields;
 mod languages;
 mod parse;
 mod problems;
+#[cfg(test)]
+mod reference;
 
 pub mod adaptive;
 pub mod analysis;

@@ -1,13 +1,14 @@
 //! Taking part: a session from its beginning to its code. Conditions never leave the server.
 
 use super::studies::{StudyPath, told};
-use super::{Answered, Fresh};
+use super::{Answered, Fresh, links, previews};
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, StimulusRef, Trial, refusals,
 };
 use crate::app::App;
 use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
+use crate::links::{Visit, is_of_link};
 use crate::making::StimulusMap;
 use crate::password::{random_code, random_token};
 use axum::extract::State;
@@ -34,14 +35,13 @@ pub(crate) struct SessionPath {
 #[into_params(parameter_in = Path)]
 pub(crate) struct TrialPath {
     /// The session's id.
-    #[expect(dead_code, reason = "`Participant` reads it, with the token")]
-    session: String,
+    pub(super) session: String,
     /// The trial's index, in plain digits.
     #[param(value_type = u32)]
-    trial_index: String,
+    pub(super) trial_index: String,
 }
 
-refusals!(NotCreated: Unauthorized, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
+refusals!(NotCreated: Unauthorized, LinkRefused, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
 
 /// Begin a session. The answer holds its token, which is told this once.
 ///
@@ -62,8 +62,15 @@ pub(crate) async fn create_session(
     let served = loaded.ready()?;
     let token = random_token();
     let params = new.params.unwrap_or_default();
-    let kind = new.kind.unwrap_or_default();
-    if kind != SessionKind::Participant && researcher.is_none() {
+    let pairs: Vec<(String, String)> = params.clone().into_iter().collect();
+    let visit = links::visit(&app, &loaded.study.id, &pairs, researcher.is_some())?;
+    if visit == Visit::Preview {
+        let begun = crate::app::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
+        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun)?)));
+    }
+    let is_pilot = visit == Visit::Pilot;
+    let kind = if is_pilot { SessionKind::Pilot } else { new.kind.unwrap_or_default() };
+    if kind != SessionKind::Participant && !is_pilot && researcher.is_none() {
         let detail = "Sign in first: a session that is no participant's is a researcher's.";
         return Err(Problem::new(ProblemCode::Unauthorized, detail));
     }
@@ -79,12 +86,13 @@ pub(crate) async fn create_session(
         repeat: loaded.study.session.repeat,
         start_key: None,
         user_agent: user_agent(&headers),
-        params: params.into_iter().collect(),
+        params: params.into_iter().filter(|(name, _)| !is_pilot || !is_of_link(name)).collect(),
         display: new.display.unwrap_or_default().into(),
         idle: loaded.idle(),
     };
-    let plan = |slot| {
-        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&loaded.study, slot);
+    let study = loaded.study.clone();
+    let plan = move |slot| {
+        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&study, slot);
         let next = NextTrials { trials: planned(&served.stimuli, trials)?, more };
         Ok::<_, Box<Problem>>(PlannedSession { seed, next })
     };
@@ -114,7 +122,7 @@ fn user_agent(headers: &HeaderMap) -> Option<String> {
 }
 
 /// Trials with their stimuli filled in.
-fn planned(
+pub(super) fn planned(
     stimuli: &StimulusMap,
     trials: Vec<kelir_study::Trial>,
 ) -> Result<Vec<PlannedTrial>, Box<Problem>> {
@@ -193,7 +201,8 @@ pub(crate) async fn put_answer(
     let answer = checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))?.answer;
     let new = NewAnswer { trial_index: trial.trial_index, answer, payload: body.text };
     let begun = app.begun(&session).await?;
-    let next = |progress: Progress| next_of(&begun, session.slot, &progress);
+    let (deciding, slot) = (begun.clone(), session.slot);
+    let next = move |progress: Progress| next_of(&deciding, slot, &progress);
     match app.store.append_answer(&session, &new, next).await? {
         Appended::Stored | Appended::Same => {}
         Appended::Different(stored) => {
@@ -235,7 +244,11 @@ pub(crate) async fn post_answer(
 }
 
 /// What follows in a session from what it was shown and answered.
-fn next_of(begun: &crate::app::Begun, slot: u32, progress: &Progress) -> Result<NextTrials, Box<Problem>> {
+pub(super) fn next_of(
+    begun: &crate::app::Begun,
+    slot: u32,
+    progress: &Progress,
+) -> Result<NextTrials, Box<Problem>> {
     let study = &begun.study;
     let chose_target = |index: u32| {
         let trial = &progress.trials.get(index as usize)?.trial;
@@ -313,7 +326,7 @@ fn language<'a>(study: &'a StudyDefinition, session: &'a Session) -> &'a str {
     study.language_for(session.display.get("language").and_then(serde_json::Value::as_str))
 }
 
-fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -> Trial {
+pub(super) fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -> Trial {
     let trial = &planned.trial;
     let stimulus =
         |sha256: &str| StimulusRef { sha256: sha256.to_owned(), url: format!("/stimuli/{sha256}") };
