@@ -162,7 +162,9 @@ pub(crate) async fn give_consent(
     Participant(session): Participant,
     State(app): State<Arc<App>>,
 ) -> Answered<SessionState> {
-    let text = app.begun(&session).await?.study.texts.consent.join("\n\n");
+    let study = app.begun(&session).await?.study;
+    // The text that was read, in the language in which it was.
+    let text = study.texts_in(language(&study, &session)).consent.join("\n\n");
     app.store.consent(&session.session_id, &sha256_hex(text.as_bytes())).await?;
     let session = app.store.session(&session.session_id).await?;
     let session = session.ok_or_else(|| Problem::internal("a session is gone"))?;
@@ -306,6 +308,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         session_id: session.session_id.clone(),
         study_id: session.study_id.clone(),
         study: told(&study),
+        language: language(&study, session).to_owned(),
         status,
         named: session.subject_id != session.session_id,
         consented: session.consented_at.is_some(),
@@ -316,6 +319,11 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         completion_code,
         redirect: redirect.flatten(),
     })
+}
+
+/// The language in which a session is taken.
+fn language<'a>(study: &'a StudyDefinition, session: &'a Session) -> &'a str {
+    study.language_for(session.display.get("language").and_then(serde_json::Value::as_str))
 }
 
 pub(super) fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -> Trial {
