@@ -5,6 +5,7 @@
 
 pub mod api;
 mod app;
+mod content;
 mod error;
 mod export;
 mod extract;
@@ -14,6 +15,7 @@ mod limiter;
 mod making;
 mod password;
 mod picture;
+mod presenting;
 mod render;
 pub mod results;
 mod routes;

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Applied migrations never change; a new one is a new line.
-const MIGRATIONS: [(i64, &str, &str); 4] = [
+const MIGRATIONS: [(i64, &str, &str); 5] = [
     (1, "first", include_str!("../../../migrations/sqlite/0001_first.sql")),
     (2, "sessions counted", include_str!("../../../migrations/sqlite/0002_sessions_counted.sql")),
     (
@@ -21,6 +21,7 @@ const MIGRATIONS: [(i64, &str, &str); 4] = [
         include_str!("../../../migrations/sqlite/0003_versions_trials_answers.sql"),
     ),
     (4, "visits", include_str!("../../../migrations/sqlite/0004_visits.sql")),
+    (6, "packings", include_str!("../../../migrations/sqlite/0006_packings.sql")),
 ];
 
 /// The database's name in its data folder.
