@@ -16,6 +16,10 @@ const pages = ["participant", "console"];
 await rm(out, { recursive: true, force: true });
 await mkdir(join(out, "assets"), { recursive: true });
 
+/** The oldest browsers that the pages are made for. */
+const oldest = JSON.parse(await readFile(join(root, "browsers.json"), "utf8"));
+const target = ["es2022", ...Object.entries(oldest).map(([name, version]) => name.toLowerCase() + version)];
+
 const { metafile } = await build({
   absWorkingDir: root,
   entryPoints: [...pages.map((page) => ({ in: `${page}/main.ts`, out: page })), { in: "shared/icon.svg", out: "icon" }],
@@ -24,10 +28,37 @@ const { metafile } = await build({
   bundle: true,
   minify: true,
   format: "esm",
-  target: ["es2022", "chrome100", "firefox100", "safari15.4"],
+  target,
   charset: "utf8",
   legalComments: "none", // the notices are in licenses.txt
-  loader: { ".svg": "copy" },
+  loader: { ".svg": "copy", ".ftl": "text" },
+  metafile: true,
+  logLevel: "warning",
+});
+
+/** What is said before the page is there, by language: of its own catalogues, with the browsers that it is made for. */
+const catalogues = (await readdir(join(root, "participant/words"))).filter((name) => name.endsWith(".ftl")).sort((a, b) => Number(b === "en.ftl") - Number(a === "en.ftl"));
+const early = Object.fromEntries(
+  await Promise.all(
+    catalogues.map(async (name) => {
+      const text = await readFile(join(root, "participant/words", name), "utf8");
+      const message = (id) => text.match(new RegExp(`^${id} = (.*)$`, "m"))[1];
+      const browsers = Object.entries(oldest).map((browser) => browser.join(" ")).join(", ");
+      const said = ["reload", "not-loaded", "too-old", "no-script"].map((id) => [id, message(id).replace("{ $browsers }", browsers)]);
+      return [name.replace(".ftl", ""), Object.fromEntries(said)];
+    }),
+  ),
+);
+const boot = await build({
+  absWorkingDir: root,
+  entryPoints: ["participant/boot.ts"],
+  outdir: join(out, "assets"),
+  entryNames: "[name]-[hash]",
+  minify: true,
+  target: "es5",
+  bundle: true,
+  charset: "ascii",
+  define: { WORDS: JSON.stringify(early) },
   metafile: true,
   logLevel: "warning",
 });
@@ -53,7 +84,10 @@ for (const page of pages) {
   ].join("\n    ");
   const shell = await readFile(join(root, page, "index.html"), "utf8");
   if (!shell.includes("<!-- assets -->")) throw new Error(`${page}/index.html has no <!-- assets --> line`);
-  await writeFile(join(out, `${page}.html`), shell.replace("<!-- assets -->", () => head));
+  const first = page === "participant" ? `<script src="/assets/${basename(Object.keys(boot.metafile.outputs)[0])}"></script>\n    ` : "";
+  const noScript = Object.entries(early).map(([language, said]) => `<p lang="${language}" dir="auto">${said["no-script"]}</p>`);
+  const made = shell.replace("<!-- assets -->", () => first + head).replace("<!-- no script -->", () => noScript.join("\n    "));
+  await writeFile(join(out, `${page}.html`), made);
 }
 
 // The notices of every package that has code in a bundle.

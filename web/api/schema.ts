@@ -1855,6 +1855,8 @@ export interface components {
         SessionState: {
             /** @description The code at the end, once completed. */
             completion_code?: string;
+            /** Whether the link named the participant: who comes by it again is the same person. */
+            named: boolean;
             /** @description Whether consent has been given. */
             consented: boolean;
             /** @description Whether more trials will be decided, from the answers to these. */

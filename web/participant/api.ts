@@ -1,6 +1,6 @@
 /** The participant's half of the HTTP interface; its types are the server's own document. */
 import type { components } from "../api/schema.ts";
-import { request } from "../shared/http.ts";
+import { Foreign, type Options, Refused, request } from "../shared/http.ts";
 
 export type Schemas = components["schemas"];
 export type Study = Schemas["Study"];
@@ -21,17 +21,41 @@ export interface Credentials {
 const v1 = "/api/v1";
 const session = (id: string) => `${v1}/sessions/${encodeURIComponent(id)}`;
 
-export const fetchStudy = (study: string) => request<Study>(`${v1}/studies/${encodeURIComponent(study)}`);
+/** Asks, and takes only what can be the server's answer: it has all of `fields`. A yes without them is somebody else's. */
+async function ask<T extends object>(path: string, fields: readonly (keyof T & string)[], options: Options = {}): Promise<T> {
+  const answer: unknown = await request(path, options);
+  const has = (field: string) => typeof answer === "object" && answer !== null && field in answer;
+  if (!fields.every(has)) throw new Foreign(`an answer without ${fields.join(" and ")}`);
+  return answer as T;
+}
 
-export const createSession = (study: string, body: Schemas["NewSession"]) =>
-  request<Schemas["CreatedSession"]>(`${v1}/studies/${encodeURIComponent(study)}/sessions`, { method: "POST", body });
+export const fetchStudy = (study: string) => ask<Study>(`${v1}/studies/${encodeURIComponent(study)}`, ["id", "texts", "trial_kinds"]);
 
-export const fetchState = (who: Credentials) => request<State>(session(who.session_id), { token: who.token });
+/** Begins a session; asked again with the same key, the server knows that it is the same one. */
+export const createSession = (study: string, body: Schemas["NewSession"], key: string) =>
+  ask<Schemas["CreatedSession"]>(`${v1}/studies/${encodeURIComponent(study)}/sessions`, ["session_id", "token"], { method: "POST", body, headers: { "idempotency-key": key } });
 
-export const giveConsent = (who: Credentials) => request<State>(`${session(who.session_id)}/consent`, { method: "POST", token: who.token });
+export const fetchState = (who: Credentials) => ask<State>(session(who.session_id), ["session_id", "trials"], { token: who.token });
+
+export const giveConsent = (who: Credentials) => ask<State>(`${session(who.session_id)}/consent`, ["session_id", "trials"], { method: "POST", token: who.token });
+
+/** The method by which answers get through. */
+let method: "PUT" | "POST" = "PUT";
 
 /** Sends the JSON of an answer; `known` trials of the plan are known here, and those decided since come back. */
-export const putAnswer = (who: Credentials, trialIndex: number, text: string, known?: number) =>
-  request<Acknowledgement>(`${session(who.session_id)}/trials/${trialIndex}${known === undefined ? "" : `?known=${known}`}`, { method: "PUT", token: who.token, text, keepalive: true });
+export async function putAnswer(who: Credentials, trialIndex: number, text: string, known?: number): Promise<Acknowledgement> {
+  const path = `${session(who.session_id)}/trials/${trialIndex}${known === undefined ? "" : `?known=${known}`}`;
+  const send = () => ask<Acknowledgement>(path, ["acknowledged"], { method, token: who.token, text, keepalive: true });
+  try {
+    return await send();
+  } catch (error) {
+    if (!(error instanceof Refused) || !isAboutMethod(error)) throw error;
+    method = method === "PUT" ? "POST" : "PUT";
+    return send();
+  }
+}
 
-export const complete = (who: Credentials) => request<Completion>(`${session(who.session_id)}/completion`, { method: "POST", token: who.token });
+/** Whether it may be the method that is not liked: some networks let no PUT pass. */
+const isAboutMethod = ({ status, foreign }: Refused) => status === 405 || status === 501 || (status === 403 && foreign);
+
+export const complete = (who: Credentials) => ask<Completion>(`${session(who.session_id)}/completion`, ["completion_code"], { method: "POST", token: who.token });

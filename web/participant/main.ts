@@ -3,15 +3,18 @@ import { Refused } from "../shared/http.ts";
 import * as api from "./api.ts";
 import { inkOn, srgbCode } from "./layout.ts";
 import { notice, persist } from "./notice.ts";
-import { action, askToTakeOver, display, Ended, KEPT, lastPage } from "./pages.ts";
+import { action, display, Ended, lastPage } from "./pages.ts";
 import { Session } from "./session.ts";
 import { Unusable } from "./stimuli.ts";
 import { openStore, sessionKey } from "./storage.ts";
 import { openTabs } from "./tabs.ts";
 import { Visit } from "./visit.ts";
+import { settle, Tab } from "./whose.ts";
+import { speak, spoken, words } from "./words/index.ts";
 import "./style.css";
 
 document.body.append(display, notice);
+speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
 /** What the link says of the participant, within what the server takes. */
@@ -24,7 +27,7 @@ async function start(): Promise<void> {
   let session: Session | null = null;
   const tabs = openTabs(key, () => {
     session?.stop();
-    lastPage("Continued in another tab", ["You went on with this study in another tab or window. You can close this one."]);
+    lastPage(words("moved-title"), [words("moved")]);
   });
   let study: api.Study;
   let elsewhere: boolean;
@@ -32,35 +35,49 @@ async function start(): Promise<void> {
     [study, elsewhere] = await Promise.all([persist(() => api.fetchStudy(studyId)), tabs.taken()]);
   } catch (error) {
     if (!(error instanceof Refused) || error.status !== 404) throw error;
-    return lastPage("There is no such study", ["Please check the link you were given, or ask the person who sent it to you."]);
+    return lastPage(words("no-study-title"), [words("no-study")]);
   }
-  document.title = study.title;
-  dress(study.surround);
-  if (elsewhere) await askToTakeOver();
+  dress(study);
+  const store = openStore(() => localStorage);
+  session = new Session(study.id, key, params, store);
+  const tab = new Tab(key, openStore(() => sessionStorage));
+  await settle(session, tab, study.per_visit, elsewhere);
   tabs.claim();
-  session = new Session(study.id, key, params, openStore(() => localStorage));
-  await session.resume();
-  if (session.state !== null) {
-    // A session keeps the texts and the question that it began with.
-    study = session.state.study;
-    document.title = study.title;
-    dress(study.surround);
-  }
-  if (session.state?.status !== "completed") session.rescue();
-  await new Visit(study, session).run();
+  session.resume();
+  if (session.state !== null) tab.has(session.id);
+  // A page that is brought back as it was may be of long ago: the server's word counts.
+  addEventListener("pageshow", ({ persisted }) => persisted && store.durable && location.reload());
+  // A session keeps the texts and the question that it began with.
+  dress(session.state?.study ?? study);
+  session.rescue();
+  await new Visit(study, session, tab).run();
 }
 
-/** Sets the grey that surrounds everything, and an ink that can be read on it. */
-function dress(surround: number): void {
+/** Gives the page its title, the grey that surrounds everything, and an ink that can be read on it. */
+function dress({ title, surround }: api.Study): void {
+  document.title = title;
   const code = srgbCode(surround);
   document.documentElement.style.setProperty("--surround", `rgb(${code} ${code} ${code})`);
   document.documentElement.dataset.ink = inkOn(surround);
 }
 
-start().catch((error: unknown) => {
+/** The end of a visit that can't go on, with what to do. */
+function stop(error: unknown): void {
   console.error(error);
-  const again = action("Reload the page", () => location.reload());
+  const again = action(words("reload"), () => location.reload());
   if (error instanceof Ended) return lastPage(error.heading, error.texts, again);
-  const known = error instanceof Refused || error instanceof Unusable ? error.message : "Something in this page went wrong.";
-  lastPage("The study has stopped", [`${known} ${KEPT}`], again);
-});
+  const known = error instanceof Refused || error instanceof Unusable ? error.message : words("stopped");
+  lastPage(words("stopped-title"), [`${known} ${words("kept")}`], again);
+}
+
+/** Whether an error is this page's own, and none of an extension's. */
+const isOurs = (error: unknown) => (error instanceof TypeError || error instanceof ReferenceError) && (error.stack ?? "").includes("/assets/participant");
+
+if (document.documentElement.dataset.refused === undefined) {
+  document.documentElement.dataset.started = "";
+  document.getElementById("boot")?.remove();
+  // What fails where nobody waits for it, such as a function that a browser lacks, would leave the page standing without a word.
+  addEventListener("error", ({ error }) => isOurs(error) && stop(error));
+  addEventListener("unhandledrejection", ({ reason }) => isOurs(reason) && stop(reason));
+  start().catch(stop);
+}

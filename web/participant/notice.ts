@@ -1,14 +1,17 @@
 /** One sentence about the line at the edge of the screen, or none. */
 import { backoffMs, pause } from "../shared/backoff.ts";
 import { h } from "../shared/dom.ts";
-import { isTemporary, Refused } from "../shared/http.ts";
+import { Foreign, isTemporary, Refused } from "../shared/http.ts";
+import { words } from "./words/index.ts";
 
 export const notice = h("p", { id: "notice", role: "status" });
 
-const troubles = new Map<"answers" | "page" | "pictures", string>();
+type About = "trial" | "answers" | "page" | "pictures";
 
-/** Says a sentence about one of three things, or that there is nothing more to say of it. */
-export function say(about: "answers" | "page" | "pictures", sentence: string | null): void {
+const troubles = new Map<About, string>();
+
+/** Says a sentence about one thing, or that there is nothing more to say of it. */
+export function say(about: About, sentence: string | null): void {
   if (sentence === null) troubles.delete(about);
   else troubles.set(about, sentence);
   const text = [...troubles.values()][0] ?? "";
@@ -33,7 +36,9 @@ export async function persist<T>(ask: () => Promise<T>): Promise<T> {
 
 /** What keeps us waiting, in words that are true of it. */
 function hindrance(error: unknown): string {
-  if (!(error instanceof Refused)) return "No connection. Nothing is lost: this page goes on by itself when it is back.";
-  if (error.code === "not_ready" || error.code === "stimuli_failed") return error.message;
-  return "The server is busy. Nothing is lost: this page goes on by itself in a moment.";
+  if (error instanceof Foreign || (error instanceof Refused && error.foreign && error.status < 500)) return words("line-foreign");
+  if (!(error instanceof Refused)) return words("line-down");
+  if (error.code === "not_ready") return words("not-ready");
+  if (error.code === "stimuli_failed") return words("stimuli-failed");
+  return words("server-busy");
 }

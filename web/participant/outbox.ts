@@ -11,6 +11,8 @@ export interface Waiting {
   index: number;
   /** The JSON that is sent, to the byte: the server tells a resend from another answer by it. */
   body: string;
+  /** What the answer was in full, once its body is only what it says itself. */
+  whole?: string;
   /** Set when the server refused it for good: it is kept, and not sent again by itself. */
   refused?: string;
 }
@@ -23,6 +25,24 @@ function upgraded(kept: Kept): Waiting {
   const { answer, ...rest } = kept;
   return { ...rest, body: JSON.stringify(answer) };
 }
+
+/** Whether something that lay in storage can be an entry: anybody may have written there. */
+const isEntry = (kept: Partial<Waiting> & { answer?: unknown } | null): kept is Kept =>
+  typeof kept === "object" && kept !== null && typeof kept.index === "number" && (typeof kept.body === "string" || typeof kept.answer === "object");
+
+/** An answer without its logs: what is refused or too long in full may pass so. Null where that is no less. */
+export function light(body: string): string | null {
+  try {
+    const fields = Object.entries(JSON.parse(body) as Answer).filter(([, value]) => typeof value !== "object");
+    const short = JSON.stringify(Object.fromEntries(fields));
+    return short.length < body.length ? short : null;
+  } catch {
+    return null;
+  }
+}
+
+/** After how many vain tries through something that refuses what it carries an answer goes without its logs. */
+const TRIES_IN_FULL = 3;
 
 /** What the outside may want to say about the line. */
 export type Line = "idle" | "sending" | "waiting" | "refused";
@@ -55,7 +75,8 @@ export class Outbox {
 
   /** Everything not acknowledged yet, in trial order. */
   get waiting(): Waiting[] {
-    return (this.#store.read<Kept[]>(this.#key) ?? []).map(upgraded);
+    const kept = this.#store.read<unknown>(this.#key);
+    return (Array.isArray(kept) ? kept : []).filter(isEntry).map(upgraded);
   }
 
   get indices(): Set<number> {
@@ -102,8 +123,13 @@ export class Outbox {
 
   /** Gives refused answers another chance. */
   retryRefused(): Promise<void> {
-    this.#write(this.waiting.map(({ index, body }) => ({ index, body })));
+    this.#write(this.waiting.map(({ refused: _, ...entry }) => entry));
     return this.flush();
+  }
+
+  /** Gives up an answer that was refused: its trial is to be taken again. */
+  discard(index: number): void {
+    this.#write(this.waiting.filter((entry) => entry.index !== index || entry.refused === undefined));
   }
 
   /** Sends nothing more (another tab has taken over). */
@@ -113,7 +139,8 @@ export class Outbox {
   }
 
   /** True when the entry left the queue or was set aside, false when it has to wait. */
-  async #deliver({ index, body }: Waiting): Promise<boolean> {
+  async #deliver(entry: Waiting): Promise<boolean> {
+    const { index, body } = entry;
     let acknowledged: Acknowledgement;
     try {
       acknowledged = await this.#hooks.send(index, body);
@@ -122,8 +149,11 @@ export class Outbox {
         this.#remove(index, null);
         return true;
       }
+      const short = entry.whole === undefined ? light(body) : null;
       if (isTemporary(error)) {
         this.#failures += 1;
+        const refusing = error instanceof Refused && error.foreign && error.status < 500 && this.#failures >= TRIES_IN_FULL;
+        if (refusing && short !== null) this.#replace({ ...entry, body: short, whole: body });
         const asked = error instanceof Refused ? (error.retryAfterMs ?? 0) : 0;
         const wait = Math.max(asked, backoffMs(this.#failures, this.#hooks.random));
         this.#timer = this.#stopped ? null : this.#hooks.setTimer(() => void this.flush(), wait);
@@ -131,7 +161,7 @@ export class Outbox {
         return false;
       }
       const reason = error instanceof Error ? error.message : String(error);
-      this.#write(this.waiting.map((entry) => (entry.index === index ? { ...entry, refused: reason } : entry)));
+      this.#replace(short === null ? { ...entry, refused: reason } : { ...entry, body: short, whole: body });
       return true;
     }
     this.#failures = 0;
@@ -146,6 +176,10 @@ export class Outbox {
   #remove(index: number, acknowledged: Acknowledgement | null): void {
     this.#write(this.waiting.filter((entry) => entry.index !== index));
     this.#hooks.onStored(index, acknowledged);
+  }
+
+  #replace(changed: Waiting): void {
+    this.#write(this.waiting.map((entry) => (entry.index === changed.index ? changed : entry)));
   }
 
   #write(entries: Waiting[]): void {

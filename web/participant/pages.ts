@@ -1,8 +1,10 @@
 /** The pages of text: what they say, and what can be done there. */
 import { h, paragraphs } from "../shared/dom.ts";
 import type { Completion, Study } from "./api.ts";
+import { copied } from "./copy.ts";
 import { showPage } from "./text-page.ts";
 import type { Legend } from "./trials/module.ts";
+import { words } from "./words/index.ts";
 
 /** Where everything but `notice` is shown. */
 export const display = h("main", { id: "study" });
@@ -27,87 +29,74 @@ export class Ended extends Error {
   }
 }
 
-/** "Nothing is lost" where a page has to be loaded again. */
-export const KEPT = "Answers you have given are stored or kept in this browser; reloading goes on from there.";
-
 /** An action's button. */
 export function action(label: string, onclick: () => void): HTMLButtonElement {
   return h("button", { type: "button", class: "action", onclick: () => onclick() }, label);
 }
 
-export function consentContent({ texts }: Study): Node[] {
-  const print_ = h("button", { type: "button", class: "link", onclick: () => print() }, "Print this page");
+export function consentContent({ texts, estimated_minutes }: Study): Node[] {
+  const print_ = h("button", { type: "button", class: "link", onclick: () => print() }, words("consent-print"));
   return [
     ...paragraphs(texts.welcome),
-    h("h2", {}, "Your consent"),
+    h("p", { "data-testid": "minutes" }, words("consent-minutes", { minutes: estimated_minutes })),
+    h("h2", {}, words("consent-title")),
     ...paragraphs(texts.consent),
-    h("p", { class: "quiet" }, "If you would rather not take part, close this page: nothing has been stored. ", print_),
+    h("p", { class: "quiet" }, words("consent-decline"), " ", print_),
   ];
 }
 
 /** The study's instructions, and the keys of each of its kinds of trial, shown once. */
 export function instructionsContent({ texts }: Study, legends: readonly Legend[]): Node[] {
   const several = legends.length > 1;
-  return [...paragraphs(texts.instructions), ...legends.flatMap((legend) => [...(several ? [h("h2", { class: "kind" }, legend.title)] : []), keys(legend)])];
+  return [...paragraphs(texts.instructions), ...legends.flatMap((legend) => [...(several ? [h("h2", { class: "kind" }, words(legend.title))] : []), keys(legend)])];
 }
 
 function keys({ answers }: Legend): HTMLElement {
   const side = ({ keys, label }: Legend["answers"][number]) => {
-    const names = keys.flatMap((key, i) => [...(i > 0 ? [" or "] : []), h("kbd", {}, key)]);
-    return h("div", { class: "side" }, h("span", { class: "sketch", "aria-hidden": "true" }), h("span", {}, ...names, ` ${label}`));
+    const names = keys.flatMap((key, i) => [...(i > 0 ? [` ${words("key-or")} `] : []), h("kbd", {}, key)]);
+    return h("div", { class: "side" }, h("span", { class: "sketch", "aria-hidden": "true" }), h("span", {}, ...names, ` ${words(label)}`));
   };
   return h("div", { class: "keys" }, ...answers.map(side));
 }
 
 /** The last page of a visit that came to its end. */
 export function showThanks(screen: HTMLElement, { texts }: Study, { completion_code, redirect }: Completion): void {
-  const code = h("output", { class: "code", "data-testid": "completion-code", "aria-label": "Your completion code" }, completion_code);
+  const code = h("output", { class: "code", translate: "no", "data-testid": "completion-code", "aria-label": words("code-label") }, completion_code);
   const target = safeRedirect(redirect);
   const action =
     target !== null
-      ? h("a", { class: "action", href: target.href, rel: "noreferrer" }, `Return to ${target.hostname.replace(/^(app|www)\./, "")}`)
+      ? h("a", { class: "action", href: target.href, rel: "noreferrer" }, words("return-to", { host: target.hostname.replace(/^(app|www)\./, "") }))
       : copyButton(completion_code);
   const content = [
     ...paragraphs(texts.thanks),
-    h("div", { class: "receipt" }, h("p", { class: "quiet" }, "All your answers are stored. Your completion code:"), code),
-    h("h2", {}, "What this study is about"),
+    h("div", { class: "receipt" }, h("p", { class: "quiet" }, words("code-stored")), code),
+    h("h2", {}, words("about-title")),
     ...paragraphs(texts.debriefing),
   ];
-  showPage(screen, "Thank you", content, action);
+  showPage(screen, words("thanks-title"), content, action);
 }
 
 /** Says which answers the server won't store; resolves when the participant wants to try again. */
 export function askAgain(screen: HTMLElement, refused: readonly string[], session: string): Promise<void> {
-  const one = refused.length === 1;
   const reasons = [...new Set(refused)].join(" ");
-  const content = paragraphs([
-    `${one ? "One answer" : `${refused.length} answers`} could not be stored, so there is no completion code yet. Nothing is lost: ${one ? "it is" : "they are"} kept in this browser.`,
-    `If trying again does not help, please send the researchers this text: ${reasons} Session ${session}.`,
-  ]);
-  return new Promise((resolve) => showPage(screen, "One thing is missing", content, action("Try again", resolve)));
-}
-
-/** Asks whether to go on here, where another tab has the study open. */
-export function askToTakeOver(): Promise<void> {
-  return new Promise((resolve) => {
-    lastPage("This study is open in another tab", ["Please go on there, or continue in this one from where you are."], action("Continue here", resolve));
-  });
+  const content = paragraphs([words("missing", { count: refused.length }), words("missing-report", { reasons, session })]);
+  return new Promise((resolve) => showPage(screen, words("missing-title"), content, action(words("try-again"), resolve)));
 }
 
 function copyButton(text: string): HTMLButtonElement {
-  const button = h("button", { type: "button", class: "action" }, "Copy the code");
-  button.addEventListener("click", () => {
-    void navigator.clipboard?.writeText(text).then(
-      () => (button.textContent = "Copied"),
-      () => (button.textContent = "Please select the code and copy it"),
-    );
+  const button = h("button", { type: "button", class: "action" }, words("code-copy"));
+  button.addEventListener("click", async () => {
+    button.textContent = words((await copied(text)) ? "code-copied" : "code-select");
   });
   return button;
 }
 
 /** A panel's return address, if it is a web address at all. */
 function safeRedirect(redirect: string | null | undefined): URL | null {
-  if (redirect === null || redirect === undefined || !URL.canParse(redirect)) return null;
-  const url = new URL(redirect);
-  return url.protocol === "https:" || url.protocol === "http:" ? url : null;
+  try {
+    const url = new URL(redirect ?? "");
+    return url.protocol === "https:" || url.protocol === "http:" ? url : null;
+  } catch {
+    return null;
+  }
 }

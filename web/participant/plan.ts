@@ -1,5 +1,6 @@
 /** Which trial comes next: the server's plan, less what it has and what still waits here to be sent. */
 import type { State, Trial } from "./api.ts";
+import { words } from "./words/index.ts";
 
 /** The trials that are neither stored on the server nor waiting in this browser, in order. */
 export function remaining(trials: readonly Trial[], waiting: ReadonlySet<number>): Trial[] {
@@ -11,7 +12,7 @@ export function remaining(trials: readonly Trial[], waiting: ReadonlySet<number>
 /** "7 of 25": where a trial stands in the whole plan, counted from one; "7 of at most 43" while others are still to be decided. */
 export function position({ trials, more, most_trials }: Pick<State, "trials" | "more" | "most_trials">, trial: Trial): string {
   const number = trials.filter((other) => other.trial_index < trial.trial_index).length + 1;
-  return more ? `${number} of at most ${most_trials}` : `${number} of ${trials.length}`;
+  return more ? words("position-growing", { number, most: most_trials }) : words("position", { number, all: trials.length });
 }
 
 /** The plan with one more answer stored, and the trials that were decided by it. */

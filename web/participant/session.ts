@@ -7,11 +7,21 @@ import { persist, say } from "./notice.ts";
 import { Outbox } from "./outbox.ts";
 import { remaining, withAnswered } from "./plan.ts";
 import type { Store } from "./storage.ts";
+import { words } from "./words/index.ts";
 
 /** What a browser remembers of a session. */
 interface Remembered extends api.Credentials {
   reloads: number;
 }
+
+/** What lay in storage, if it can be a session: anybody may have written there. */
+function remembered(kept: Partial<Remembered> | null): Remembered | null {
+  const { session_id, token, reloads } = typeof kept === "object" && kept !== null ? kept : {};
+  return typeof session_id === "string" && typeof token === "string" ? { session_id, token, reloads: typeof reloads === "number" ? reloads : 0 } : null;
+}
+
+/** Stands between a session's key and its id once it is left. */
+const LEFT = "#";
 
 export class Session {
   readonly #studyId: string;
@@ -22,6 +32,10 @@ export class Session {
   #outbox: Outbox;
   /** What the server said last, with the answers that it has acknowledged since. */
   state: api.State | null = null;
+  /** Whether the server has said that it does not know the session. */
+  gone = false;
+  /** Trials that are taken again because their answers were refused. */
+  readonly #again = new Set<number>();
   /** Whether the page can't go on before its answers are stored. */
   #waiting = false;
 
@@ -30,7 +44,7 @@ export class Session {
     this.#key = key;
     this.#params = params;
     this.#store = store;
-    this.#who = store.read<Remembered>(key);
+    this.#who = remembered(store.read(key));
     this.#outbox = this.#openOutbox();
   }
 
@@ -53,20 +67,22 @@ export class Session {
     return this.outbox.waiting.length > 0 || (this.state?.trials ?? []).some((trial) => trial.answered);
   }
 
-  /** Takes up a session this browser knows; one that the server doesn't know any more is forgotten. */
-  async resume(): Promise<void> {
-    if (this.#who !== null) {
-      const who = this.#who;
-      try {
-        this.state = await persist(() => api.fetchState(who));
-        this.#remember({ ...who, reloads: who.reloads + 1 });
-      } catch (error) {
-        if (!(error instanceof Refused) || ![401, 403, 404, 410].includes(error.status)) throw error;
-        this.#store.remove(this.#key);
-        this.#who = null;
-        this.#outbox = this.#openOutbox();
-      }
+  /** What the server says of the session that this browser knows; one that the server doesn't know any more is forgotten. */
+  async look(): Promise<api.State | null> {
+    if (this.#who === null) return null;
+    const who = this.#who;
+    try {
+      this.state = await persist(() => api.fetchState(who));
+    } catch (error) {
+      if (!(error instanceof Refused) || ![401, 403, 404, 410].includes(error.status)) throw error;
+      this.#forget();
     }
+    return this.state;
+  }
+
+  /** Takes the session up, and sends what waits. */
+  resume(): void {
+    if (this.#who !== null) this.#remember({ ...this.#who, reloads: this.#who.reloads + 1 });
     addEventListener("online", () => void this.outbox.flush());
     addEventListener("beforeunload", (event) => {
       if (!this.#store.durable && this.outbox.waiting.length > 0) event.preventDefault();
@@ -74,20 +90,54 @@ export class Session {
     void this.outbox.flush();
   }
 
+  /** Leaves the session to whom it belongs: whoever is here begins anew, and what waits of the other is still sent. */
+  leave(): void {
+    if (this.#who !== null) this.#store.write(`${this.#key}${LEFT}${this.#who.session_id}`, this.#who);
+    this.#forget();
+  }
+
+  #forget(): void {
+    this.#store.remove(this.#key);
+    this.#store.remove(this.#startKey);
+    this.#who = null;
+    this.state = null;
+    this.#outbox = this.#openOutbox();
+  }
+
+  /** Where the key is kept by which the server knows that a session begun again is the same one. */
+  get #startKey(): string {
+    return this.#key.replace("kelir:session:", "kelir:start:");
+  }
+
   /** Nothing is stored of anybody before this. */
   async consent(): Promise<void> {
     if (this.#who === null) {
-      const { token, ...state } = await persist(() => api.createSession(this.#studyId, { params: this.#params, display: describeDisplay() }));
+      const { token, ...state } = await this.#create();
       this.#remember({ session_id: state.session_id, token, reloads: 0 });
+      this.#store.remove(this.#startKey);
       this.#outbox = this.#openOutbox();
     }
     const who = this.#known();
     this.state = await persist(() => api.giveConsent(who));
   }
 
+  /** Begins a session. Its key stays until the reply is here, so that a lost reply makes no second session. */
+  async #create(): Promise<api.Schemas["CreatedSession"]> {
+    const key = this.#store.read<string>(this.#startKey) ?? randomKey();
+    this.#store.write(this.#startKey, key);
+    try {
+      return await persist(() => api.createSession(this.#studyId, { params: this.#params, display: describeDisplay() }, key));
+    } catch (error) {
+      // A final no: the next try is another one.
+      this.#store.remove(this.#startKey);
+      throw error;
+    }
+  }
+
   /** Keeps an answer and sends it. */
   answer(trial: api.Trial, data: Record<string, unknown>): void {
     const answer = { ...data, reload_count: this.#who?.reloads ?? 0, timestamp: new Date().toISOString() };
+    say("trial", null);
     this.outbox.put(trial.trial_index, answer as unknown as api.Answer);
   }
 
@@ -99,6 +149,17 @@ export class Session {
     } finally {
       this.#waiting = false;
     }
+  }
+
+  /** Gives up each answer that was refused for the first time: its trial is left to be taken again. Says whether there was one. */
+  takeAgain(): boolean {
+    const again = this.outbox.refused.filter(({ index }) => !this.#again.has(index));
+    for (const { index } of again) {
+      this.#again.add(index);
+      this.outbox.discard(index);
+    }
+    if (again.length > 0) say("trial", words("answer-again"));
+    return again.length > 0;
   }
 
   /** Waits until the server, which has all answers, has decided on more trials or says that there are no more. */
@@ -128,7 +189,7 @@ export class Session {
   /** Sends what earlier visits on this device left behind, such as another participant's last answers before the line went. */
   rescue(): void {
     for (const other of this.#store.keys("kelir:session:")) {
-      const who = this.#store.read<Remembered>(other);
+      const who = remembered(this.#store.read(other));
       if (other === this.#key || who === null) continue;
       const left = new Outbox(`kelir:outbox:${who.session_id}`, this.#store, {
         ...timers,
@@ -137,6 +198,7 @@ export class Session {
         send: (index, body) => api.putAnswer(who, index, body),
       });
       if (left.waiting.length > 0) void left.flush();
+      else if (other.includes(LEFT)) this.#store.remove(other);
     }
   }
 
@@ -154,18 +216,24 @@ export class Session {
     const who = this.#who;
     return new Outbox(`kelir:outbox:${who?.session_id ?? "none"}`, this.#store, {
       ...timers,
-      send: (index, body) => api.putAnswer(who as Remembered, index, body, this.state?.trials.length),
+      send: async (index, body) => {
+        try {
+          return await api.putAnswer(who as Remembered, index, body, this.state?.trials.length);
+        } catch (error) {
+          if (error instanceof Refused && error.code === "unauthorized") this.gone = true;
+          throw error;
+        }
+      },
       onStored: (index, acknowledged) => {
         if (this.state === null) return;
         const trials = withAnswered(this.state.trials, index, acknowledged?.trials);
         this.state = { ...this.state, trials, more: acknowledged?.more ?? this.state.more };
       },
       onLine: (line) => {
-        const goOn = this.#waiting ? "this page goes on by itself when it is back" : "you can go on";
-        const kept = this.#store.durable ? `Your answers are kept here and sent later; ${goOn}.` : `Please keep this page open; your answers are sent later${this.#waiting ? `, and ${goOn}` : ""}.`;
-        const refused = `An answer could not be stored yet. It is kept here${this.#waiting ? "" : "; you can go on"}.`;
+        const kept = this.#store.durable ? (this.#waiting ? "answers-kept-waiting" : "answers-kept") : this.#waiting ? "answers-held-waiting" : "answers-held";
+        const refused = this.#waiting ? "answers-refused-waiting" : "answers-refused";
         // While a retry is under way the sentence stays: it would flicker otherwise.
-        if (line !== "sending") say("answers", line === "waiting" ? `No connection. ${kept}` : line === "refused" ? refused : null);
+        if (line !== "sending") say("answers", line === "waiting" ? words(kept) : line === "refused" ? words(refused) : null);
       },
     });
   }
@@ -176,3 +244,9 @@ const timers = {
   clearTimer: (timer: unknown) => clearTimeout(timer as number),
   random: Math.random,
 };
+
+/** 128 random bits in hex. */
+function randomKey(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+}

@@ -2,6 +2,7 @@
 import { backoffMs, pause } from "../shared/backoff.ts";
 import type { StimulusRef, Trial } from "./api.ts";
 import { hash } from "./sha256.ts";
+import { words } from "./words/index.ts";
 
 /** The manifest of an animation stimulus (`application/vnd.kelir.animation+json`). */
 export interface Manifest {
@@ -124,14 +125,14 @@ async function fetchVerified(ref: StimulusRef, onWaiting: (waiting: boolean) => 
           return new Blob([body], { type });
         }
         wrong += 1;
-        if (wrong > 2) throw new Unusable(`The bytes of stimulus ${ref.sha256} are not what the study's plan says.`);
+        if (wrong > 2) throw new Unusable(words("picture-damaged"));
         continue;
       }
     } catch (error) {
       if (error instanceof Unusable) throw error;
     }
     if (response !== null && response.status >= 400 && response.status < 500 && response.status !== 408 && response.status !== 429) {
-      throw new Unusable(`The server has no stimulus ${ref.sha256} (status ${response.status}).`);
+      throw new Unusable(words("picture-refused", { status: response.status }));
     }
     failures += 1;
     if (failures > 1) onWaiting(true);
@@ -142,7 +143,7 @@ async function fetchVerified(ref: StimulusRef, onWaiting: (waiting: boolean) => 
 function checked(manifest: Partial<Manifest>): Manifest {
   const { fps, frames } = manifest;
   if (typeof fps !== "number" || !(fps > 0) || !Array.isArray(frames) || frames.length === 0) {
-    throw new Unusable("An animation's manifest has no frames or no rate.");
+    throw new Unusable(words("picture-damaged"));
   }
   return { loop: true, width: 0, height: 0, ...manifest, fps, frames };
 }

@@ -53,7 +53,12 @@ export function openStore(storage: () => Storage): Store {
       }
     },
     keys(prefix) {
-      const kept = disk === null ? [] : Array.from({ length: disk.length }, (_, i) => disk?.key(i) ?? "");
+      let kept: string[] = [];
+      try {
+        if (disk !== null) kept = Array.from({ length: disk.length }, (_, i) => disk?.key(i) ?? "");
+      } catch {
+        // a browser that lets nothing be listed
+      }
       return [...new Set([...kept, ...memory.keys()])].filter((key) => key.startsWith(prefix));
     },
   };

@@ -12,10 +12,19 @@ export interface Tabs {
 /** How long an open tab has to answer: it only has to post one message. */
 const ANSWER_MS = 150;
 
+/** Null where a browser has no such line, or refuses it (private windows). */
+function open(key: string): BroadcastChannel | null {
+  try {
+    return new BroadcastChannel(key);
+  } catch {
+    return null;
+  }
+}
+
 /** Opens the line between the tabs of `key`; `lost` is called when another tab takes over. */
 export function openTabs(key: string, lost: () => void): Tabs {
   const tab = `${Date.now()}-${Math.random()}`;
-  const channel = typeof BroadcastChannel === "undefined" ? null : new BroadcastChannel(key);
+  const channel = open(key);
   let mine = false;
   let heard: (() => void) | null = null;
   channel?.addEventListener("message", ({ data }: MessageEvent<Message>) => {

@@ -5,13 +5,15 @@ import { Refused } from "../shared/http.ts";
 import type { Study, Trial } from "./api.ts";
 import { measureRefresh } from "./display.ts";
 import { say } from "./notice.ts";
-import { askAgain, consentContent, display, Ended, instructionsContent, KEPT, showThanks } from "./pages.ts";
+import { askAgain, consentContent, display, Ended, instructionsContent, showThanks } from "./pages.ts";
 import { position } from "./plan.ts";
 import type { Session } from "./session.ts";
 import { openLoader, type Pictures, Unusable } from "./stimuli.ts";
 import TextPage, { showPage } from "./text-page.ts";
 import { loadKind, UnknownKind } from "./trials/kinds.ts";
 import type { TrialModule } from "./trials/module.ts";
+import { offerNext, type Tab } from "./whose.ts";
+import { words } from "./words/index.ts";
 
 type TimelineArray = Extract<Parameters<JsPsych["run"]>[0], unknown[]>;
 /** jsPsych's description of one page or trial. */
@@ -23,16 +25,18 @@ const PATIENCE_MS = 400;
 export class Visit {
   readonly #found: Study;
   readonly #session: Session;
+  readonly #tab: Tab;
   readonly #jsPsych = initJsPsych({ display_element: display });
   readonly #loader = openLoader((waiting) =>
-    say("pictures", waiting ? "The pictures take longer to arrive. Nothing is lost; it goes on by itself." : null),
+    say("pictures", waiting ? words("pictures-slow") : null),
   );
   #refresh: Promise<number | null> | null = null;
   #instructed = false;
 
-  constructor(study: Study, session: Session) {
+  constructor(study: Study, session: Session, tab: Tab) {
     this.#found = study;
     this.#session = session;
+    this.#tab = tab;
   }
 
   /** The study as it was when the session began; before that, as it is now. */
@@ -59,7 +63,9 @@ export class Visit {
   async #next(kinds: readonly TrialModule[], on_finish: () => Promise<void>): Promise<Node | null> {
     if (this.#session.state?.consented !== true) return this.#consent(on_finish);
     if (!this.#instructed && !this.#session.begun) return this.#instructions(kinds, on_finish);
-    const trial = this.#session.remaining[0] ?? (await this.#decided());
+    this.#known();
+    this.#session.takeAgain();
+    const trial = this.#session.remaining[0] ?? (await this.#left());
     return trial === null ? null : this.#trial(trial, await this.#kindFor(trial), on_finish);
   }
 
@@ -68,9 +74,12 @@ export class Visit {
       type: TextPage,
       heading: this.#study.title,
       content: () => consentContent(this.#study),
-      button: "I agree and take part",
+      button: words("consent-agree"),
       testid: "consent-agree",
-      action: () => this.#session.consent(),
+      action: async () => {
+        await this.#session.consent();
+        this.#tab.has(this.#session.id);
+      },
       on_load: noTabStop,
       on_finish,
     };
@@ -80,9 +89,9 @@ export class Visit {
     this.#instructed = true;
     return {
       type: TextPage,
-      heading: "How it works",
+      heading: words("instructions-title"),
       content: () => instructionsContent(this.#study, kinds.map((kind) => kind.legend)),
-      button: "Start",
+      button: words("instructions-start"),
       testid: "start",
       on_load: () => {
         noTabStop();
@@ -127,38 +136,46 @@ export class Visit {
     const ahead = await Promise.all(this.#session.remaining.map(async (trial) => ({ trial, kind: await kindOf(trial.trial) })));
     for (const { trial, kind } of ahead) {
       const missing = kind.roles.find((role) => trial.shown[role] === undefined);
-      if (missing !== undefined) throw new Unusable(`Trial ${trial.trial_index} of the plan has no ${missing} stimulus.`);
+      if (missing !== undefined) throw new Unusable(words("picture-missing"));
       const why = kind.refusal?.(trial, await this.#measure()) ?? null;
-      if (why !== null) throw new Ended("This display can't show the next pictures", [why, `Please open the link you were given in another browser or on another device. ${KEPT}`]);
+      if (why !== null) throw new Ended(words("display-title"), [why, `${words("display-other")} ${words("kept")}`]);
     }
     return kindOf(trial.trial);
   }
 
-  /** A trial that the server decides on from the answers, once it has them all; null when there are no more. */
-  async #decided(): Promise<Trial | null> {
-    if (this.#session.state?.more !== true) return null;
+  /**
+   * A trial that is left once every answer has been sent: one to be taken again, or one that the server decides on from the answers;
+   * null when all is answered.
+   */
+  async #left(): Promise<Trial | null> {
     const screen = this.#jsPsych.getDisplayElement() ?? cleared();
-    const waiting: Patience = { screen, heading: "One moment", sentence: "The next pictures depend on your answers: they come once these are stored." };
-    await this.#stored(waiting);
-    await patiently(waiting, this.#session.grown());
+    const deciding = { screen, heading: words("deciding-title"), sentence: words("deciding") };
+    await this.#stored(this.#session.state?.more === true ? deciding : finishing(screen));
+    await patiently(deciding, this.#session.grown());
     screen.replaceChildren();
     return this.#session.remaining[0] ?? null;
   }
 
-  /** Resolves when every answer is stored; one that is refused for good is said, and tried again as often as one likes. */
+  /** Resolves when every answer is stored or its trial is to be taken again; one that is refused for good is said, and tried again as often as one likes. */
   async #stored(waiting: Patience): Promise<void> {
     for (;;) {
       await patiently(waiting, this.#session.settled());
+      this.#known();
       const refused = this.#session.outbox.refused.map((entry) => entry.refused ?? "");
-      if (refused.length === 0) return;
+      if (refused.length === 0 || this.#session.takeAgain()) return;
       await askAgain(waiting.screen, refused, this.#session.id);
       await this.#session.outbox.retryRefused();
     }
   }
 
+  /** Ends the visit where the server does not know the session any more: a reload begins anew. */
+  #known(): void {
+    if (this.#session.gone) throw new Ended(words("gone-title"), [words("gone")]);
+  }
+
   /** A trial's pictures; says so when they are long in coming, for the screen is empty until then. */
   async #load(trial: Trial): Promise<Pictures> {
-    const slow = setTimeout(() => say("pictures", "The next pictures are on their way; please wait a moment."), 1000);
+    const slow = setTimeout(() => say("pictures", words("pictures-coming")), 1000);
     try {
       return await this.#loader.load(trial);
     } finally {
@@ -174,10 +191,11 @@ export class Visit {
   /** Waits until every answer is stored, then asks for the code: it exists only then. */
   async #finish(): Promise<void> {
     const screen = cleared();
-    const waiting: Patience = { screen, heading: "Almost done", sentence: "The study ends once your last answers are stored." };
+    const waiting = finishing(screen);
     try {
       await this.#stored(waiting);
       showThanks(screen, this.#study, await patiently(waiting, this.#session.complete()));
+      if (this.#found.per_visit) offerNext(screen, this.#session, this.#tab);
     } catch (error) {
       if (!(error instanceof Refused) || error.code !== "incomplete") throw error;
       // The server misses a trial that we believed stored. Its word counts: where its plan shows the gap, a reload asks again.
@@ -194,6 +212,8 @@ interface Patience {
   heading: string;
   sentence: string;
 }
+
+const finishing = (screen: HTMLElement): Patience => ({ screen, heading: words("finishing-title"), sentence: words("finishing") });
 
 /** Says what is waited for, where it takes longer than a moment. */
 async function patiently<T>({ screen, heading, sentence }: Patience, work: Promise<T>): Promise<T> {
@@ -218,7 +238,7 @@ async function kindOf(kind: string): Promise<TrialModule> {
     return await loadKind(kind);
   } catch (error) {
     if (!(error instanceof UnknownKind)) throw error;
-    throw new Ended("Please reload this page", ["This study has been updated since this page was loaded, and the page can't show its next pictures.", KEPT], error);
+    throw new Ended(words("updated-title"), [words("updated"), words("kept")], error);
   }
 }
 

@@ -17,12 +17,23 @@ export class Refused extends Error {
     this.code = code;
     this.retryAfterMs = retryAfterMs;
   }
+
+  /** Whether something between us and the server said no, such as a proxy: it does not know what the server would say. */
+  get foreign(): boolean {
+    return this.code.startsWith("http_");
+  }
 }
 
-/** Whether the same request may succeed later: no answer at all, a timeout, too many requests, or the server's fault. */
+/** Something said yes that is not our server, such as the sign-in page of a hotel's network. */
+export class Foreign extends Error {}
+
+/** Whether the same request may succeed later: no answer at all, one that is not the server's, a timeout, too many requests, or the server's fault. */
 export function isTemporary(error: unknown): boolean {
-  return !(error instanceof Refused) || error.status === 408 || error.status === 429 || error.status >= 500;
+  return !(error instanceof Refused) || error.foreign || error.status === 408 || error.status === 429 || error.status >= 500;
 }
+
+/** Most bytes that a request may have which outlives its page: browsers take 64 KiB of all of these together, and refuse the rest like a lost line. */
+const KEEPALIVE_BYTES = 16 << 10;
 
 export interface Options {
   method?: "GET" | "POST" | "PUT" | "DELETE";
@@ -34,9 +45,11 @@ export interface Options {
   /** Lets the request outlive the page. */
   keepalive?: boolean;
   timeoutMs?: number;
+  /** More headers. */
+  headers?: Record<string, string>;
 }
 
-/** Sends a request and reads the JSON of a 2xx answer (`undefined` when it has no body); throws `Refused` or a network error. */
+/** Sends a request and reads the JSON of a 2xx answer (`undefined` when it has no body); throws `Refused`, `Foreign` or a network error. */
 export async function request<T>(path: string, options: Options = {}): Promise<T> {
   const abort = new AbortController();
   const timer = setTimeout(() => abort.abort(new Error("no answer in time")), options.timeoutMs ?? 15_000);
@@ -48,18 +61,27 @@ export async function request<T>(path: string, options: Options = {}): Promise<T
         accept: "application/json, application/problem+json",
         ...(options.token === undefined ? {} : { authorization: `Bearer ${options.token}` }),
         ...(body === undefined ? {} : { "content-type": "application/json" }),
+        ...options.headers,
       },
       cache: "no-store",
       credentials: "same-origin",
-      keepalive: options.keepalive ?? false,
+      keepalive: options.keepalive === true && (body ?? "").length <= KEEPALIVE_BYTES,
       signal: abort.signal,
       ...(body === undefined ? {} : { body }),
     });
     const text = await response.text();
-    if (response.ok) return (text === "" ? undefined : JSON.parse(text)) as T;
+    if (response.ok) return (text === "" ? undefined : json(text)) as T;
     throw refusal(response.status, text, response.headers.get("retry-after"));
   } finally {
     clearTimeout(timer);
+  }
+}
+
+function json(text: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch (error) {
+    throw new Foreign("an answer that is no JSON", { cause: error });
   }
 }
 

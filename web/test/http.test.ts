@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { isTemporary, Refused, refusal } from "../shared/http.ts";
+import { Foreign, isTemporary, Refused, refusal, request } from "../shared/http.ts";
 
 test("the server's problem document is read, a proxy's page is not", () => {
   const problem = { type: "about:blank", title: "Conflict", status: 409, code: "already_answered", detail: "It stands." };
@@ -33,4 +33,20 @@ test("what may be tried again", () => {
 test("Retry-After in seconds, capped; dates and nonsense are ignored", () => {
   const wait = (header: string | null) => refusal(429, "", header).retryAfterMs;
   assert.deepEqual([wait("7"), wait("99999"), wait("-1"), wait("Wed, 21 Oct 2026 07:28:00 GMT"), wait(null)], [7000, 120_000, null, null, null]);
+});
+
+test("what a proxy or a sign-in page says is not the server's word: it may be otherwise later", async (t) => {
+  assert.ok(isTemporary(refusal(403, "<html>Blocked</html>", null)) && isTemporary(refusal(404, "", null)));
+  assert.ok(!isTemporary(refusal(404, '{"code":"not_found"}', null)));
+  const answers: Response[] = [];
+  t.mock.method(globalThis, "fetch", async () => answers.shift());
+  answers.push(new Response("<!doctype html><title>Welcome to our hotel</title>", { headers: { "content-type": "text/html" } }));
+  await assert.rejects(request("/x"), (error) => error instanceof Foreign && isTemporary(error));
+});
+
+test("a request that outlives its page is small: browsers refuse the others as if the line were lost", async (t) => {
+  const kept: unknown[] = [];
+  t.mock.method(globalThis, "fetch", async (_: string, { keepalive }: RequestInit) => (kept.push(keepalive), new Response("{}")));
+  for (const length of [100, 16 << 10, (16 << 10) + 1]) await request("/x", { method: "PUT", text: "x".repeat(length), keepalive: true });
+  assert.deepEqual(kept, [true, true, false]);
 });

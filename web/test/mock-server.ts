@@ -35,7 +35,7 @@ export interface Session {
 
 /** `[status, JSON or null, headers?]` */
 type Reply = [number, unknown, Record<string, string>?];
-type Fault = { status: number; body?: unknown; after?: boolean } | "hang up" | null;
+type Fault = { status: number; body?: unknown; html?: string; after?: boolean } | "hang up" | "stall" | "half" | null;
 export type Results = (path: string, query: URLSearchParams) => Reply | null;
 
 export interface Options {
@@ -47,6 +47,8 @@ export interface Options {
   stuff?: Material;
   /** An adaptive plan: so many trials are decided at the start, one more with each answer, and `most` is promised. */
   grow?: { start: number; most: number } | null;
+  /** Each visit is somebody else's. */
+  perVisit?: boolean;
 }
 
 export const problem = (status: number, code: Schemas["ProblemCode"], detail: string, more: Partial<Schemas["Problem"]> = {}): Reply => {
@@ -54,12 +56,12 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, perVisit = false }: Options) {
   const sessions = new Map<string, Session>();
-  const log: Array<{ method: string; path: string; query: string; text: string }> = [];
+  const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
 
-  const found = (): Study => ({ ...study, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
+  const found = (): Study => ({ ...study, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
     return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));
@@ -71,6 +73,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     study_id: study.id,
     study: found(),
     status: s.code ? "completed" : s.consented ? "in_progress" : "consent",
+    named: s.body.params?.["PROLIFIC_PID"] !== undefined,
     consented: s.consented,
     trials: s.consented ? decided(s) : [],
     more: more(s),
@@ -86,7 +89,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
       return [200, state(s)];
     }
     const index = Number(rest.match(/^\/trials\/(\d+)$/)?.[1] ?? NaN);
-    if (method === "PUT" && index < decided(s).length) {
+    if ((method === "PUT" || method === "POST") && index < decided(s).length) {
       const stored = s.answers.get(index);
       if (stored !== undefined && stored !== text) return problem(409, "already_answered", "This trial has an answer already; the first one stands.");
       s.answers.set(index, text);
@@ -152,9 +155,12 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
       send(status, status < 400 ? "application/json" : "application/problem+json", data === null ? "" : JSON.stringify(data), { "cache-control": "no-store", ...headers });
     const planned = fault({ method, path, body: text === "" ? undefined : JSON.parse(text) });
     if (planned === "hang up") return void req.socket.destroy();
+    if (planned === "stall") return;
+    if (planned === "half") return void (res.writeHead(200, { "content-type": "application/json", "content-length": 500 }), res.write('{"acknowledged":'));
+    if (planned?.html !== undefined) return send(planned.status, "text/html", planned.html);
     if (planned !== null && planned.after !== true) return json(planned.body === undefined ? problem(planned.status, "internal", "A planned fault.") : [planned.status, planned.body]);
     if (path.startsWith("/api/")) {
-      log.push({ method, path, query: search, text });
+      log.push({ method, path, query: search, text, key: req.headers["idempotency-key"] as string | undefined });
       const answer = api(method, path, query, text, req.headers.authorization?.replace(/^Bearer /, ""));
       return planned?.after === true ? void req.socket.destroy() : json(answer);
     }

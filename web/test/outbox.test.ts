@@ -208,3 +208,45 @@ test("waiting doubles from one second to thirty, with jitter below", () => {
   assert.deepEqual([1, 2, 3, 4, 5, 6, 60].map((n) => backoffMs(n, () => 1)), [1000, 2000, 4000, 8000, 16_000, 30_000, 30_000]);
   assert.equal(backoffMs(3, () => 0), 2000);
 });
+
+const logged = { ...answer("left"), viewport: [1280, 800], frames: { left: { fps: 12 } } };
+
+test("an answer that is refused with its logs is sent without them", async () => {
+  const { outbox, sent, bodies, stored } = bench((_, tries) => (tries === 1 ? new Refused(413, "too_large", "too long") : true));
+  outbox.put(0, logged);
+  await outbox.settled();
+  assert.deepEqual([sent, stored], [[0, 0], [[0, 1]]]);
+  assert.deepEqual(bodies.map((body) => Object.keys(JSON.parse(body)).length), [5, 3]);
+});
+
+test("what something in between will not carry goes without its logs after three tries", async () => {
+  const { outbox, sent, bodies, elapse } = bench((_, tries) => (tries <= 3 ? new Refused(413, "http_413", "proxy") : true));
+  outbox.put(0, logged);
+  for (let i = 0; i < 4; i++) await (settle(), elapse());
+  assert.deepEqual([sent, bodies.map((body) => body.includes("frames"))], [[0, 0, 0, 0], [true, true, true, false]]);
+  assert.deepEqual(outbox.waiting, []);
+});
+
+test("a trial whose answer was refused can be taken again", async () => {
+  const { outbox, bodies } = bench((_, tries) => (tries <= 1 ? new Refused(422, "invalid_field", "no") : true));
+  outbox.put(0, answer("left"));
+  await outbox.settled();
+  outbox.discard(1);
+  assert.deepEqual([...outbox.indices], [0]);
+  outbox.discard(0);
+  assert.deepEqual([...outbox.indices], []);
+  outbox.put(0, answer("right"));
+  await outbox.settled();
+  assert.deepEqual([bodies.length, outbox.waiting], [2, []]);
+});
+
+test("nonsense in storage is no answer, and stops nobody", async () => {
+  for (const nonsense of ["{}", "7", '"x"', "null", '[null,7,{"index":1},{"body":"{}"}]', "[[", '{"length":3}']) {
+    disks = disk();
+    disks.setItem("box", nonsense);
+    const { outbox, sent } = bench(() => true);
+    outbox.put(0, answer("left"));
+    await outbox.settled();
+    assert.deepEqual(sent, [0], nonsense);
+  }
+});

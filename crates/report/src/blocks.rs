@@ -18,7 +18,7 @@ pub(crate) fn section(block: &BlockReport) -> Section {
         summary.target
     ))];
     if block.first.is_none() {
-        pieces.push(Piece::Text("Nobody has answered yet.".to_owned()));
+        pieces.push(Piece::Text(sentence(&none_judged(summary))));
         return Section::new(title(block), pieces);
     }
     pieces.extend(block.analysis.notes.iter().map(|note| Piece::Warning(sentence(note))));
@@ -30,6 +30,15 @@ pub(crate) fn section(block: &BlockReport) -> Section {
         pieces.push(Piece::Table(table("", &psychometric(Sample::Screened, &summary.id, found))));
     }
     Section::new(title(block), pieces)
+}
+
+/// Of a block that nobody who is judged has answered wholly: how far they came.
+pub(crate) fn none_judged(summary: &BlockSummary) -> String {
+    let some = match summary.incomplete {
+        0 => String::new(),
+        n => format!(", {n} answered some"),
+    };
+    format!("of the participants who are judged, none answered every pair{some}")
 }
 
 /// What is shown, and how.

@@ -81,7 +81,7 @@ fn significant_after_holm(block: &BlockReport) -> bool {
 
 fn found(report: &StudyReport) -> Vec<String> {
     if report.is_empty() {
-        return vec!["Nothing yet: nobody has answered. This report fills in as answers come.".to_owned()];
+        return vec![report.standing.summary.clone()];
     }
     let mut lines: Vec<String> = report.report.blocks.iter().map(of_block).collect();
     if let Some(scale) = &report.report.scale {
@@ -121,7 +121,7 @@ fn of_block(block: &BlockReport) -> String {
                 count(summary.n, "participant")
             );
         }
-        return format!("{title}: no participant has answered every pair yet.");
+        return format!("{title}: {}.", crate::blocks::none_judged(summary));
     };
     let interval =
         share.by_participant.as_ref().map_or([share.wilson.low, share.wilson.high], |b| [b.low, b.high]);

@@ -14,6 +14,7 @@ mod markdown;
 mod numbers;
 mod sections;
 mod sources;
+mod standing;
 mod text;
 
 pub use csv::csv;
@@ -21,12 +22,12 @@ pub use document::{Cell, Column, Document, Figure, Piece, Row, Section, Table};
 pub use html::{escaped, html};
 pub use markdown::{Figures, Markdown, markdown};
 pub use numbers::{Number, Sample, numbers};
+pub use standing::{Excluded, Flagged, Standing};
 pub use text::text;
 
 use kelir_stats::pairwise::ScaleIntervals;
 use kelir_stats::paper::Replication;
 use kelir_study::report::{BlockReport, Report};
-use kelir_study::screening::Exclusion;
 use kelir_study::{Screening, StudyDefinition};
 use serde::Serialize;
 use serde_json::Value;
@@ -53,6 +54,8 @@ pub struct StudyReport {
     pub answered: Option<[String; 2]>,
     /// How many people take part.
     pub participants: Participants,
+    /// Who is judged, and who is not.
+    pub standing: Standing,
     /// Who is left out by the study's rules of screening, and why.
     pub excluded: Vec<Excluded>,
     /// The study's rules of screening.
@@ -85,15 +88,6 @@ pub struct Participants {
     pub in_progress: u64,
     /// Finished.
     pub completed: u64,
-}
-
-/// A participant who is left out.
-#[derive(Clone, Debug, Serialize, ToSchema)]
-pub struct Excluded {
-    /// Session's id.
-    pub session_id: String,
-    /// Every reason there is.
-    pub reasons: Vec<Exclusion>,
 }
 
 /// A version of a study and what it has gathered.
@@ -198,8 +192,8 @@ impl Fault {
 }
 
 impl StudyReport {
-    /// Whether anybody has answered anything that is analysed.
+    /// Whether nobody whose answers are judged has answered anything that is analysed.
     pub fn is_empty(&self) -> bool {
-        self.blocks_with_excluded.as_ref().unwrap_or(&self.report.blocks).iter().all(|b| b.first.is_none())
+        self.report.blocks.iter().all(|block| block.first.is_none())
     }
 }

@@ -51,6 +51,10 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
         ("in progress (participants)", people.in_progress),
         ("completed (participants)", people.completed),
         ("excluded by the study's rules (participants)", report.excluded.len() as u64),
+        ("judged (participants)", report.standing.judged),
+        ("of persons who had taken part before (sessions)", report.standing.repeated.len() as u64),
+        ("trial runs (sessions)", report.standing.pilots),
+        ("simulated (sessions)", report.standing.simulated),
     ] {
         all.push(Rows::of(Sample::Screened, "", "participants").whole(statistic, value));
     }

@@ -5,7 +5,7 @@ use crate::document::{Cell, Piece, Row, Section, Table};
 use crate::format::{MISSING, count, fixed, p_value, percent, range, share, significant};
 use crate::numbers::{Sample, of_scale};
 use crate::{StudyReport, figures, headline, sources};
-use kelir_study::screening::Exclusion;
+use kelir_study::visits::Repeated;
 use kelir_study::{Condition, Kind, StudyDefinition};
 use std::collections::BTreeSet;
 
@@ -37,18 +37,10 @@ pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
 }
 
 fn participants(report: &StudyReport) -> Section {
-    let people = &report.participants;
-    let mut pieces = vec![Piece::Text(format!(
-        "{} began, {} in progress, {} finished.{}",
-        count(people.started, "participant"),
-        people.in_progress,
-        people.completed,
-        report.answered.as_ref().map_or(String::new(), |[first, last]| format!(
-            " The first answer came at {}, the last at {}.",
-            minute(first),
-            minute(last)
-        ))
-    ))];
+    let times = report.answered.as_ref().map_or(String::new(), |[first, last]| {
+        format!(" The first answer came at {}, the last at {}.", minute(first), minute(last))
+    });
+    let mut pieces = vec![Piece::Text(format!("{}{times}", report.standing.summary))];
     let others: u64 = report.other_versions.iter().map(|v| v.sessions).sum();
     if others > 0 {
         pieces.push(Piece::Warning(format!(
@@ -66,10 +58,10 @@ fn participants(report: &StudyReport) -> Section {
         };
         pieces.push(Piece::Text(format!("Nobody is excluded. {why}")));
     } else {
-        let rows = report.excluded.iter().take(MOST_LISTED).map(|excluded| {
-            let reasons: Vec<String> = excluded.reasons.iter().map(reason).collect();
-            Row::Cells(vec![Cell::text(&excluded.session_id), Cell::text(reasons.join("; "))])
-        });
+        let rows =
+            report.excluded.iter().take(MOST_LISTED).map(|excluded| {
+                Row::Cells(vec![Cell::text(&excluded.session_id), Cell::text(&excluded.why)])
+            });
         let caption = format!(
             "{} excluded by the study's rules, which were stated before there were answers.",
             count(report.excluded.len() as u64, "participant")
@@ -83,6 +75,21 @@ fn participants(report: &StudyReport) -> Section {
             )));
         }
     }
+    let repeated = &report.standing.repeated;
+    if !repeated.is_empty() {
+        let rows = repeated.iter().take(MOST_LISTED);
+        let row = |one: &Repeated| Row::Cells(vec![Cell::text(&one.session_id), Cell::text(&one.counted)]);
+        let caption = format!(
+            "{} of persons who had taken part before; their first complete one counts.",
+            count(repeated.len() as u64, "session")
+        );
+        pieces.push(Piece::Table(Table::new(
+            caption,
+            &["session", "the one that counts"],
+            rows.map(row).collect(),
+        )));
+    }
+    pieces.extend(flagged(report));
     Section::new("Participants", pieces)
 }
 
@@ -94,22 +101,21 @@ fn minute(time: &str) -> String {
     }
 }
 
-fn reason(exclusion: &Exclusion) -> String {
-    let trials_of = |n: &u32, what: &str| count(u64::from(*n), what);
-    match exclusion {
-        Exclusion::TooFast { trials, allowed } => {
-            format!("{} too fast, {allowed} allowed", trials_of(trials, "answer"))
-        }
-        Exclusion::FailedCatchTrials { trials, allowed } => {
-            format!("{} failed, {allowed} allowed", trials_of(trials, "catch trial"))
-        }
-        Exclusion::StraightLining { trials } => {
-            format!("the same side in all {}", trials_of(trials, "trial"))
-        }
-        Exclusion::Incomplete { answered, trials } => {
-            format!("{answered} of {} answered", trials_of(trials, "trial"))
-        }
-    }
+/// What was noticed of sessions, whether or not it leaves them out.
+fn flagged(report: &StudyReport) -> Option<Piece> {
+    let flagged = &report.standing.flagged;
+    let rows = flagged.iter().map(|one| {
+        let leaves_out = if one.excludes { "yes" } else { "no" };
+        Row::Cells(vec![
+            Cell::text(one.flag.as_str()),
+            Cell::text(&one.meaning),
+            Cell::whole(one.sessions),
+            Cell::text(leaves_out),
+        ])
+    });
+    let columns = ["noticed", "meaning", "sessions#", "leaves out"];
+    let table = Table::new("What was noticed of sessions.", &columns, rows.collect());
+    (!flagged.is_empty()).then_some(Piece::Table(table))
 }
 
 fn design(report: &StudyReport) -> Section {

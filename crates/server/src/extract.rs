@@ -179,6 +179,20 @@ impl FromRequestParts<Arc<App>> for Participant {
     }
 }
 
+/// The name of the researcher who is signed in, if one is.
+pub(crate) struct SignedIn(pub(crate) Option<String>);
+
+impl FromRequestParts<Arc<App>> for SignedIn {
+    type Rejection = Box<Problem>;
+
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Box<Problem>> {
+        match cookie(&parts.headers, crate::routes::COOKIE) {
+            Some(token) => Ok(SignedIn(app.store.signed_in(&sha256_hex(token.as_bytes())).await?)),
+            None => Ok(SignedIn(None)),
+        }
+    }
+}
+
 /// The researcher who is signed in, by name.
 pub(crate) struct Researcher(pub(crate) String);
 
@@ -187,7 +201,7 @@ impl FromRequestParts<Arc<App>> for Researcher {
 
     async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Box<Problem>> {
         let sign_in = || Problem::new(ProblemCode::Unauthorized, "Sign in first.");
-        let token = cookie(&parts.headers, crate::routes::COOKIE).ok_or_else(sign_in)?;
-        app.store.signed_in(&sha256_hex(token.as_bytes())).await?.map(Researcher).ok_or_else(sign_in)
+        let SignedIn(name) = SignedIn::from_request_parts(parts, app).await?;
+        name.map(Researcher).ok_or_else(sign_in)
     }
 }

@@ -30,7 +30,7 @@ pub use library::{Library, check_study};
 pub use making::{Made, Maker, Making, Task};
 pub use render::RenderMaker;
 pub use routes::openapi_json;
-pub use selection::{Selection, SelectionError, VersionRef, With};
+pub use selection::{Include, Selection, SelectionError, VersionRef, With};
 pub use server::{Handle, Server, ServerConfig};
 
 /// Re-exported for callers that read a data folder without a server.

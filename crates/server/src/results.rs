@@ -3,15 +3,17 @@
 use crate::api::StudyVersion;
 use crate::export::write_row;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
-use kelir_report::{Chain, DifferentStimulus, Fault, Participants, PooledVersion, Stimulus, StudyReport};
+use kelir_report::{
+    Chain, DifferentStimulus, Fault, Participants, PooledVersion, Standing, Stimulus, StudyReport,
+};
 use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
 use kelir_store::{Store, StoreError, StoredAnswers, StudyStimulus};
 use kelir_study::StudyDefinition;
 use kelir_study::analysis::{BlockSummary, conditions_scale, summarise};
-use kelir_study::answers::{Answers, Participant, blocks, compares};
+use kelir_study::answers::{Answers, blocks, compares};
 use kelir_study::report::Report;
-use kelir_study::screening::screen;
+use kelir_study::visits::{Judged, LeftOut, SessionKind, Visit};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -39,6 +41,8 @@ pub struct StudyResults {
     pub different_stimuli: Vec<DifferentStimulus>,
     /// How many people take part.
     pub participants: Participants,
+    /// Who is judged, and who is not.
+    pub standing: Standing,
     /// Who is left out by the study's rules of screening, and why.
     pub excluded: Vec<Excluded>,
     /// The paper's test for each block, without the excluded.
@@ -64,7 +68,7 @@ pub async fn results(store: &Store, selection: &Selection) -> Result<StudyResult
     results_of(store, selection, &answers).await
 }
 
-async fn read(store: &Store, selection: &Selection) -> Result<Arc<Answers>, StoreError> {
+pub(crate) async fn read(store: &Store, selection: &Selection) -> Result<Arc<Answers>, StoreError> {
     let mut stored = StoredAnswers::new(&selection.study, &selection.versions);
     store.read_on(&mut stored).await?;
     Ok(stored.answers())
@@ -77,9 +81,10 @@ pub(crate) async fn results_of(
     answers: &Answers,
 ) -> Result<StudyResults, StoreError> {
     let study = &selection.study;
-    let (everybody, judged, excluded) = screened(study, answers);
-    let blocks = summarise(study, &judged);
-    let (scale, scale_note) = match conditions_scale(study, &judged) {
+    let visits = selection.visits(store).await?;
+    let judged = Judged::of(study, answers, &visits, &selection.include.0);
+    let (participants, excluded) = (participants(&visits), excluded(&judged));
+    let (scale, scale_note) = match conditions_scale(study, &judged.judged) {
         Ok(scale) => (Some(scale), None),
         Err(note) => (None, Some(note)),
     };
@@ -91,9 +96,10 @@ pub(crate) async fn results_of(
         version: selection.version().to_owned(),
         pooled,
         different_stimuli,
-        participants: participants(store, selection).await?,
-        blocks,
-        blocks_with_excluded: (!excluded.is_empty()).then(|| summarise(study, &everybody)),
+        participants,
+        standing: standing(selection, &judged).summarised(&participants, &excluded, &other_versions),
+        blocks: summarise(study, &judged.judged),
+        blocks_with_excluded: (!excluded.is_empty()).then(|| summarise(study, &judged.everybody)),
         scale,
         scale_note,
         excluded,
@@ -102,20 +108,23 @@ pub(crate) async fn results_of(
     })
 }
 
-/// How many people take part in the chosen versions.
-async fn participants(store: &Store, selection: &Selection) -> Result<Participants, StoreError> {
-    let counts = store.version_counts(&selection.study.id, selection.idle()).await?;
-    let of_versions = selection.versions.iter().filter_map(|version| counts.get(version));
-    Ok(of_versions.fold(Participants::default(), |sum, counts| Participants {
-        started: sum.started + counts.participants.started,
-        in_progress: sum.in_progress + counts.participants.in_progress,
-        completed: sum.completed + counts.participants.completed,
-    }))
+/// How many people take part, as their sessions say.
+fn participants(visits: &[Visit]) -> Participants {
+    let people = visits.iter().filter(|visit| visit.kind == SessionKind::Participant);
+    people.fold(Participants::default(), |sum, visit| Participants {
+        started: sum.started + 1,
+        in_progress: sum.in_progress + u64::from(visit.is_active),
+        completed: sum.completed + u64::from(visit.completed_us.is_some()),
+    })
 }
 
 /// The store's counts as the report has them.
 pub(crate) fn counted(people: kelir_store::Participants) -> Participants {
     Participants { started: people.started, in_progress: people.in_progress, completed: people.completed }
+}
+
+fn standing(selection: &Selection, judged: &Judged<'_>) -> Standing {
+    Standing::of(judged, &selection.include.0, &selection.study.screening.flags)
 }
 
 fn stimulus(shown: StudyStimulus) -> Stimulus {
@@ -139,12 +148,14 @@ pub(crate) async fn report_of(
     answers: &Answers,
 ) -> Result<StudyReport, StoreError> {
     let study = &selection.study;
-    let (everybody, judged, excluded) = screened(study, answers);
-    let report = Report::of(study, &judged);
+    let visits = selection.visits(store).await?;
+    let judged = Judged::of(study, answers, &visits, &selection.include.0);
+    let (participants, excluded) = (participants(&visits), excluded(&judged));
+    let report = Report::of(study, &judged.judged);
     let (with_excluded, scale_with_excluded) = if excluded.is_empty() {
         (None, None)
     } else {
-        let everybody = Report::of(study, &everybody);
+        let everybody = Report::of(study, &judged.everybody);
         (Some(everybody.blocks), everybody.scale)
     };
     let (pooled, other_versions) = selection.gathered(store).await?;
@@ -160,7 +171,8 @@ pub(crate) async fn report_of(
         different_stimuli,
         kelir_version: env!("CARGO_PKG_VERSION").to_owned(),
         answered: times.map(|(first, last)| [first, last]),
-        participants: participants(store, selection).await?,
+        participants,
+        standing: standing(selection, &judged).summarised(&participants, &excluded, &other_versions),
         screening: study.screening.clone(),
         report,
         blocks_with_excluded: with_excluded,
@@ -192,7 +204,8 @@ fn fault(kelir_store::Fault { chain, seq, what, note }: kelir_store::Fault) -> F
 pub async fn pairs_csv(store: &Store, selection: &Selection) -> Result<String, StoreError> {
     let study = &selection.study;
     let answers = read(store, selection).await?;
-    let (_, judged, _) = screened(study, &answers);
+    let visits = selection.visits(store).await?;
+    let judged = Judged::of(study, &answers, &visits, &selection.include.0);
     let sessions = store.sessions(&study.id, &selection.versions).await?;
     let observers: HashMap<&str, &str> =
         sessions.iter().map(|s| (s.session_id.as_str(), s.subject_id.as_str())).collect();
@@ -200,7 +213,7 @@ pub async fn pairs_csv(store: &Store, selection: &Selection) -> Result<String, S
     let header =
         ["observer", "session", "scene", "condition_A", "condition_B", "is_A_selected", "left_condition"];
     write_row(&mut out, header.map(str::to_owned));
-    for participant in judged {
+    for participant in judged.judged {
         let session = &*participant.session_id;
         let observer = observers.get(session).copied().unwrap_or_default();
         for (block, items) in blocks(study).filter(|(block, _)| compares(block)) {
@@ -217,23 +230,15 @@ pub async fn pairs_csv(store: &Store, selection: &Selection) -> Result<String, S
     Ok(out)
 }
 
-/// Everybody who answered, those whom no rule leaves out, and the others with the reasons; each in the order they began.
-/// Sessions without any answer are not among them.
-fn screened<'a>(
-    study: &StudyDefinition,
-    answers: &'a Answers,
-) -> (Vec<&'a Participant>, Vec<&'a Participant>, Vec<Excluded>) {
-    let everybody = answers.participants();
-    let (mut judged, mut excluded) = (Vec::with_capacity(everybody.len()), Vec::new());
-    for &participant in &everybody {
-        let reasons = screen(study, participant);
-        if reasons.is_empty() {
-            judged.push(participant);
-        } else {
-            excluded.push(Excluded { session_id: participant.session_id.to_string(), reasons });
+/// Who is left out by the study's rules, and why.
+fn excluded(judged: &Judged<'_>) -> Vec<Excluded> {
+    let excluded = judged.left_out.iter().filter_map(|(visit, why)| match why {
+        LeftOut::Excluded(reasons) => {
+            Some(Excluded::new(&visit.session_id, reasons.clone(), visit.completed_us.is_some()))
         }
-    }
-    (everybody, judged, excluded)
+        _ => None,
+    });
+    excluded.collect()
 }
 
 /// The versions of a study, the one that is served (`current`; absent: that was served last) first, with what each has gathered.

@@ -3,6 +3,7 @@
 use kelir_report::{DifferentStimulus, PooledVersion};
 use kelir_store::{Store, StoreError, StudyStimulus, StudyVersion};
 use kelir_study::StudyDefinition;
+use kelir_study::visits::{SessionKind, Visit};
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
@@ -30,12 +31,19 @@ impl Default for With {
     }
 }
 
+/// Kinds of sessions that are judged like participants'.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Include(pub Vec<SessionKind>);
+
 /// Why versions cannot be chosen.
 #[derive(Debug, thiserror::Error)]
 pub enum SelectionError {
     /// The name is none.
     #[error("version = {0:?}: {RULE}")]
     Malformed(String),
+    /// A kind of session is none, or named twice.
+    #[error("include = {0:?}: {INCLUDE_RULE}")]
+    MalformedKinds(String),
     /// No version of the study begins like that.
     #[error("version = {0:?}: this study has no such version; it has {known}", known = list(.1))]
     Unknown(String, Vec<String>),
@@ -52,6 +60,8 @@ pub enum SelectionError {
 
 /// The rule of a version's name.
 pub const RULE: &str = "must be current, or 8 to 64 digits of a version's hash (0-9, a-f)";
+/// The rule of kinds of sessions that are judged too.
+pub const INCLUDE_RULE: &str = "must be pilot, simulated or both, separated by a comma";
 /// Fewest digits that may stand for a whole hash.
 const FEWEST: usize = 8;
 
@@ -85,6 +95,22 @@ impl std::str::FromStr for With {
     }
 }
 
+impl std::str::FromStr for Include {
+    type Err = SelectionError;
+
+    /// Kinds separated by commas; empty: none.
+    fn from_str(text: &str) -> Result<Include, SelectionError> {
+        let malformed = || SelectionError::MalformedKinds(text.to_owned());
+        let mut kinds = Vec::new();
+        for name in text.split(',').filter(|_| !text.is_empty()) {
+            let others = [SessionKind::Pilot, SessionKind::Simulated];
+            let kind = others.into_iter().find(|kind| kind.as_str() == name && !kinds.contains(kind));
+            kinds.push(kind.ok_or_else(malformed)?);
+        }
+        Ok(Include(kinds))
+    }
+}
+
 impl VersionRef {
     /// The one of `known` (the current one first) that is meant.
     fn among<'a>(&self, known: &'a [StudyVersion]) -> Result<&'a StudyVersion, SelectionError> {
@@ -110,6 +136,8 @@ pub struct Selection {
     pub study: StudyDefinition,
     /// Versions whose answers count, the named one first.
     pub versions: Vec<String>,
+    /// Whose answers are judged besides participants'.
+    pub include: Include,
 }
 
 impl Selection {
@@ -142,7 +170,17 @@ impl Selection {
                 versions.push(other);
             }
         }
-        Ok(Selection { study: named.study.clone(), versions })
+        Ok(Selection { study: named.study.clone(), versions, include: Include::default() })
+    }
+
+    /// The same, with sessions of these kinds judged too.
+    pub fn including(self, include: Include) -> Selection {
+        Selection { include, ..self }
+    }
+
+    /// The sessions of the chosen versions, in the order they began.
+    pub(crate) async fn visits(&self, store: &Store) -> Result<Vec<Visit>, StoreError> {
+        store.visits(&self.study.id, &self.versions, self.idle()).await
     }
 
     /// The version that gives the design.
@@ -221,6 +259,14 @@ mod tests {
         assert_eq!("01234567,current".parse::<With>().unwrap(), two);
         assert_eq!("all".parse::<With>().unwrap(), With::All);
         assert_eq!("".parse::<With>().unwrap(), With::default());
+        assert_eq!(
+            "simulated,pilot".parse::<Include>().unwrap().0,
+            [SessionKind::Simulated, SessionKind::Pilot]
+        );
+        assert_eq!("".parse::<Include>().unwrap(), Include::default());
+        for wrong in ["participant", "pilot,pilot", "pilot,", "Pilot"] {
+            assert!(wrong.parse::<Include>().is_err(), "{wrong}");
+        }
         for wrong in ["all,01234567", "01234567,", ",", "01234567 ,current"] {
             assert!(wrong.parse::<With>().is_err(), "{wrong}");
         }

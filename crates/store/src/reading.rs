@@ -3,6 +3,7 @@
 //! sqlx hands every row from thread to thread, some ten microseconds each; a million answers want a cursor. So this reads with
 //! rusqlite: the same SQLite library in the same process, read-only, on as many threads as there are cores.
 
+use crate::clock::micros;
 use crate::error::StoreError;
 use crate::sqlite::{DATABASE, Store};
 use kelir_study::StudyDefinition;
@@ -101,7 +102,7 @@ fn read_first(
     part: &mut Part<'_>,
 ) -> Result<(), StoreError> {
     let mut statement = connection.prepare(
-        "SELECT session_id, pair_id, left_condition, right_condition, trial_index, choice = 'left', rt_ms FROM responses
+        "SELECT session_id, pair_id, left_condition, right_condition, trial_index, choice = 'left', rt_ms, received_at FROM responses
          WHERE response_id BETWEEN ?1 AND ?2 ORDER BY response_id",
     )?;
     let mut rows = statement.query((range.start(), range.end()))?;
@@ -113,7 +114,8 @@ fn read_first(
         if part.is_ours(session_id)? {
             let Ok(trial_index) = row.get(4) else { continue };
             let choice = Row::choice(session_id, trial_index, item, [left, right], row.get(5)?, row.get(6)?);
-            part.answers.push(choice);
+            let received_us = text(row, 7).and_then(micros);
+            part.answers.push(Row { received_us, ..choice });
         }
     }
     Ok(())
@@ -127,7 +129,7 @@ type RowValues<'a> = (
     IgnoredAny,
     Cow<'a, str>,
     Shown<'a>,
-    IgnoredAny,
+    Cow<'a, str>,
     IgnoredAny,
     IgnoredAny,
 );
@@ -165,9 +167,9 @@ fn read_second(
         else {
             continue;
         };
-        let (_, _, _, _, kind, shown, _, _, _) = values;
+        let (_, _, _, _, kind, shown, received_at, _, _) = values;
         let Some(Ok(observation)) = rules(&kind).map(|rules| rules.observe(&shown, answer)) else { continue };
-        part.answers.push(Row { session_id, trial_index, observation });
+        part.answers.push(Row { session_id, trial_index, observation, received_us: micros(&received_at) });
     }
     Ok(())
 }

@@ -2,39 +2,19 @@
 
 use crate::clock;
 use crate::error::StoreError;
+use crate::persons::{Begun, settle};
 use crate::plans::{PlannedSession, insert_trials};
 use crate::sqlite::Store;
+use kelir_study::Repeat;
 use kelir_study::plan::lowest_free_slot;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value, json};
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// Whose a session is. The analysis is of participants alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum SessionKind {
-    /// A participant's.
-    #[default]
-    Participant,
-    /// A researcher's trial run.
-    Pilot,
-    /// A simulation's.
-    Simulated,
-}
-
-impl SessionKind {
-    /// As stored.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            SessionKind::Participant => "participant",
-            SessionKind::Pilot => "pilot",
-            SessionKind::Simulated => "simulated",
-        }
-    }
-}
+pub use kelir_study::visits::SessionKind;
 
 /// What is known of someone who begins.
 #[derive(Clone, Debug)]
@@ -53,6 +33,8 @@ pub struct NewSession {
     pub kind: SessionKind,
     /// What was noticed when it began, in words such as `repeated_id`.
     pub flags: Vec<String>,
+    /// What happens where the same person has a session of the study already.
+    pub repeat: Repeat,
     /// The browser's own key of its wish to begin, the same when it asks again.
     pub start_key: Option<String>,
     /// What the browser calls itself.
@@ -133,19 +115,24 @@ pub struct Participants {
 }
 
 impl Store {
-    /// Begins a session in the lowest slot that no completed or active session of this version holds. `plan` is asked for
+    /// Begins a session, unless the same person has one and the study's policy says otherwise, in the lowest slot that no participant's completed
+    /// or active session of this version holds. `plan` is asked for
     /// that slot's plan while the slot is held, so two newcomers never get the same.
     ///
     /// # Errors
     /// The database fails, or `plan` does; nothing is stored.
     pub async fn create_session<E: From<StoreError>>(
         &self,
-        new: NewSession,
+        mut new: NewSession,
         plan: impl FnOnce(u32) -> Result<PlannedSession, E>,
-    ) -> Result<Session, E> {
+    ) -> Result<Begun, E> {
         let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await.map_err(StoreError::from)?;
+        if let Some(settled) = settle(&mut tx, &mut new).await? {
+            tx.commit().await.map_err(StoreError::from)?;
+            return Ok(settled);
+        }
         let held: Vec<u32> = sqlx::query_scalar(
-            "SELECT slot FROM sessions WHERE study_id = $1 AND version = $2
+            "SELECT slot FROM sessions WHERE study_id = $1 AND version = $2 AND kind = 'participant'
              AND (completed_at IS NOT NULL OR last_seen_at > $3)",
         )
         .bind(&new.study_id)
@@ -184,7 +171,7 @@ impl Store {
         insert_session(&mut tx, &session).await?;
         insert_trials(&mut tx, &session.session_id, &planned.next.trials, &session.created_at, 0).await?;
         tx.commit().await.map_err(StoreError::from)?;
-        Ok(session)
+        Ok(Begun::New(session))
     }
 
     /// The session with this id; `None` for an unknown one.
@@ -364,7 +351,7 @@ pub(crate) async fn insert_session(
     Ok(())
 }
 
-fn read_session(row: &SqliteRow) -> Result<Session, StoreError> {
+pub(crate) fn read_session(row: &SqliteRow) -> Result<Session, StoreError> {
     let json = |column: &'static str| -> Result<Value, StoreError> {
         let text: String = row.try_get(column)?;
         serde_json::from_str(&text).map_err(|e| StoreError::corrupt(column, e))

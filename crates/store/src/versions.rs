@@ -97,7 +97,7 @@ impl Store {
         definition.map(|text| parse(&text)).transpose()
     }
 
-    /// How many people and answers each version of a study has; `idle` as for sessions.
+    /// How many participants and answers each version of a study has; `idle` as for sessions.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -110,7 +110,7 @@ impl Store {
         let people = sqlx::query(
             "SELECT version, count(*) AS started, count(completed_at) AS completed,
              count(CASE WHEN completed_at IS NULL AND last_seen_at > $2 THEN 1 END) AS in_progress
-             FROM sessions WHERE study_id = $1 GROUP BY version",
+             FROM sessions WHERE study_id = $1 AND kind = 'participant' GROUP BY version",
         );
         for row in people.bind(study_id).bind(clock::before_now(idle)).fetch_all(&self.reader).await? {
             let count = |column| row.try_get::<i64, _>(column).map(|n| n as u64);

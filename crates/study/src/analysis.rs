@@ -161,7 +161,7 @@ impl TTest {
         let sum: u64 = counts.iter().map(|(x, k)| u64::from(*x) * k).sum();
         let mean = (n > 0).then(|| sum as f64 / n as f64);
         let (sd, note) = match n {
-            0 => (None, "no participant has answered all pairs yet"),
+            0 => (None, "of the participants who are judged, none answered all pairs"),
             1 => (None, "one participant alone has no standard deviation"),
             _ => (Some(0.0), "all participants chose the same number: t is not defined"),
         };

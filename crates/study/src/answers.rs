@@ -3,6 +3,7 @@
 
 use crate::definition::{Block, StudyDefinition};
 use crate::trials::{self, Observation};
+use crate::visits::Pace;
 use kelir_stats::pairwise::{Choice, Observer};
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -17,6 +18,8 @@ pub struct Row<'a> {
     pub trial_index: u32,
     /// What it says.
     pub observation: Observation<'a>,
+    /// When the server received it, µs since 1970; `None` where that is not known.
+    pub received_us: Option<i64>,
 }
 
 impl<'a> Row<'a> {
@@ -36,7 +39,7 @@ impl<'a> Row<'a> {
             chose_first,
             rt_ms,
         });
-        Row { session_id, trial_index, observation }
+        Row { session_id, trial_index, observation, received_us: None }
     }
 }
 
@@ -51,7 +54,7 @@ pub struct Given {
     pub chose_target: bool,
     /// Whether the stimulus was chosen that stood first: on the left, or in the first interval.
     pub chose_first: bool,
-    /// Response time in ms.
+    /// Response time in ms; NaN where it is not known.
     pub rt_ms: f64,
 }
 
@@ -60,6 +63,8 @@ pub struct Given {
 pub struct Participant {
     /// Whose answers.
     pub session_id: Arc<str>,
+    /// What the answers claim of time.
+    pub pace: Pace,
     /// By rising item, then by trial.
     answers: Vec<Given>,
 }
@@ -132,14 +137,17 @@ impl Answers {
         let chose_target = target_first == chose_first;
         let given = Given { item, trial_index, chose_target, chose_first, rt_ms };
         let index = self.participant(row.session_id);
-        insert(&mut self.participants[index].answers, given, again);
+        let participant = &mut self.participants[index];
+        participant.pace = participant.pace.then(Pace::of(trial_index, again, rt_ms, row.received_us));
+        insert(&mut participant.answers, given, again);
     }
 
     /// Adds later answers to the same study.
     pub fn append(&mut self, later: Answers) {
         for participant in later.participants {
             let index = self.participant(&participant.session_id);
-            let own = &mut self.participants[index].answers;
+            let Participant { pace, answers: own, .. } = &mut self.participants[index];
+            *pace = pace.then(participant.pace);
             if own.is_empty() {
                 *own = participant.answers;
             } else {
@@ -156,7 +164,7 @@ impl Answers {
         }
         let session_id: Arc<str> = session_id.into();
         self.known.insert(session_id.clone(), self.participants.len());
-        self.participants.push(Participant { session_id, answers: Vec::new() });
+        self.participants.push(Participant { session_id, pace: Pace::default(), answers: Vec::new() });
         self.participants.len() - 1
     }
 

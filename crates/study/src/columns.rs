@@ -1,9 +1,13 @@
 //! The table of responses: one tidy row a trial. What each column is, is said by the records here and by the answers of each kind of trial;
 //! the codebook, the header and the cells are made from these.
 
+mod participants;
+
+pub use participants::{ParticipantColumns, participants_codebook};
+
 use crate::definition::{Block, Kind, StudyDefinition};
 use crate::plan::Trial;
-use crate::schema::{Column, Record, worded};
+use crate::schema::{Column, Record, Sound, worded};
 use crate::trials::{Role, TrialKind, TrialName};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -44,6 +48,10 @@ pub struct SessionColumns {
     pub slot: u32,
     /// Seed of the session's trial plan.
     pub plan_seed: String,
+    /// 1 where the analysis counts the session's answers; else 0.
+    pub judged: u8,
+    /// Why it does not, where it has a reason.
+    pub reject_reason: Option<String>,
 }
 
 /// What a row says of its trial and answer, beside what the page sent.
@@ -101,6 +109,9 @@ pub struct TrialColumns {
     pub correct: Option<u8>,
     /// What ended the trial: response.
     pub ended_on: String,
+    /// Fields of the answer that the page sent against their rules, separated by spaces: what breaks a rule is empty here, and in the stored
+    /// answer as it was sent.
+    pub flags: String,
     /// Width of the window's inside.
     #[schema(extensions(("x-unit" = json!("CSS px"))))]
     pub viewport_width: Option<f64>,
@@ -264,12 +275,17 @@ impl Rows {
     /// The cells of one answer.
     pub fn cells(&self, answered: &Answered<'_>) -> Vec<String> {
         let mut values = Map::new();
+        let sent = match answered.payload {
+            // Withdrawn.
+            Value::Null => Sound { value: Value::Null, broken: Vec::new() },
+            payload => answered.trial.trial.rules().record().sound(payload),
+        };
         for (path, column) in &self.sent {
-            let value = path.iter().try_fold(answered.payload, |value, key| value.get(key));
+            let value = path.iter().try_fold(&sent.value, |value, key| value.get(key));
             values.insert(column.clone(), value.cloned().unwrap_or_default());
         }
-        for record in [serde_json::to_value(answered.session), serde_json::to_value(trial_columns(answered))]
-        {
+        let trial = serde_json::to_value(trial_columns(answered, &sent));
+        for record in [serde_json::to_value(answered.session), trial] {
             values.extend(record.ok().and_then(|record| record.as_object().cloned()).unwrap_or_default());
         }
         for (role, placed) in &answered.trial.shown {
@@ -281,8 +297,9 @@ impl Rows {
     }
 }
 
-fn trial_columns(answered: &Answered<'_>) -> TrialColumns {
-    let Answered { study, trial, payload, .. } = answered;
+fn trial_columns(answered: &Answered<'_>, sent: &Sound) -> TrialColumns {
+    let Answered { study, trial, .. } = answered;
+    let viewport = &sent.value["viewport"];
     let block = study.block(&trial.block_id);
     let target = block.map(|block| block.target.as_str()).unwrap_or_default();
     let chosen = answered.answer.and_then(|answer| trial.trial.rules().chosen(answer));
@@ -324,8 +341,9 @@ fn trial_columns(answered: &Answered<'_>) -> TrialColumns {
         target_chosen,
         correct: target_chosen.filter(|_| is_catch),
         ended_on: "response".to_owned(),
-        viewport_width: payload["viewport"][0].as_f64(),
-        viewport_height: payload["viewport"][1].as_f64(),
+        flags: sent.broken.join(" "),
+        viewport_width: viewport[0].as_f64(),
+        viewport_height: viewport[1].as_f64(),
         received_at: answered.received_at.to_owned(),
         payload_hash: answered.payload_hash.clone(),
         answer_hash: answered.answer_hash.to_owned(),

@@ -61,6 +61,9 @@ pub struct SessionRules {
     /// Whether each visit is somebody else's, as on a laboratory's computer: nothing is resumed without being asked for.
     #[serde(default, skip_serializing_if = "is_default")]
     pub per_visit: bool,
+    /// The parameter of the participant's link that names the participant; absent: the first that is there of those that panels use.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<String>,
     /// Parameters of the participant's link that stand in the table of participants, besides the one that names the participant.
     #[serde(default, skip_serializing_if = "is_default")]
     pub params: Vec<String>,
@@ -77,6 +80,7 @@ impl SessionRules {
             _ => None,
         });
         let per_visit = fields.get("per_visit", "true or false", Value::as_bool);
+        let id = fields.get("id", "the name of a parameter, of 1 to 64 characters", |v| text(v, 64));
         let params = fields.get("params", "at most 64 different names of 1 to 64 characters", |v| {
             let names: Vec<String> = v.as_array()?.iter().map(|v| text(v, 64)).collect::<Option<_>>()?;
             let different: std::collections::BTreeSet<&String> = names.iter().collect();
@@ -86,6 +90,7 @@ impl SessionRules {
         Some(SessionRules {
             repeat: repeat.unwrap_or_default(),
             per_visit: per_visit.unwrap_or(false),
+            id,
             params: params.unwrap_or_default(),
         })
     }

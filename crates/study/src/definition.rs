@@ -3,6 +3,7 @@
 use crate::adaptive::Adaptive;
 use crate::conduct::{ResponseRules, SessionRules};
 use crate::trials::{TrialKind, TrialName};
+use crate::visits::Flag;
 use kelir_stats::psychometric::{Lapse, Sigmoid};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -205,6 +206,9 @@ pub struct Screening {
     pub straight_lining: bool,
     /// Whether not finishing excludes the participant.
     pub incomplete: bool,
+    /// What excludes the participant where it was noticed of the session.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub flags: Vec<Flag>,
 }
 
 /// A key of the file that is no part of what it says: all are equal.

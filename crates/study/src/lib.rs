@@ -19,6 +19,7 @@ pub mod schema;
 pub mod screening;
 pub mod trials;
 pub mod versions;
+pub mod visits;
 
 pub use conduct::{NEWEST_EDITION, Repeat, ResponseRules, SessionRules};
 pub use definition::{

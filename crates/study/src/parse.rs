@@ -9,6 +9,7 @@ use crate::definition::{Block, Completion, Item, ItemsKey, Kind, Screening, Stud
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
 use crate::problems::{Problem, StudyErrors};
 use crate::trials::TrialKind;
+use crate::visits::Flag;
 use std::collections::BTreeSet;
 use toml::{Table, Value};
 
@@ -135,6 +136,13 @@ fn read_screening(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Sc
         fields.get("max_failed_catch_trials", "a count from 0 to 10000", |v| integer(v, 0, 10_000));
     let incomplete = fields.get("incomplete", "true or false", Value::as_bool);
     let straight_lining = fields.get("straight_lining", "true or false", Value::as_bool);
+    let known: Vec<String> = Flag::ALL.iter().map(|flag| format!("\"{}\"", flag.as_str())).collect();
+    let flags = fields.get("flags", &format!("a list of different ones of {}", known.join(", ")), |v| {
+        let flags: Vec<Flag> =
+            v.as_array()?.iter().map(|v| Flag::named(v.as_str()?)).collect::<Option<_>>()?;
+        let different: BTreeSet<&Flag> = flags.iter().collect();
+        (different.len() == flags.len()).then_some(flags)
+    });
     fields.finish();
     Some(Screening {
         min_rt_ms,
@@ -142,6 +150,7 @@ fn read_screening(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Sc
         max_failed_catch_trials: max_failed_catch_trials.and_then(|n| u32::try_from(n).ok()),
         straight_lining: straight_lining.unwrap_or(false),
         incomplete: incomplete.unwrap_or(false),
+        flags: flags.unwrap_or_default(),
     })
 }
 

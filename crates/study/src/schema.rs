@@ -42,6 +42,15 @@ fn escaped(name: &str) -> String {
     name.replace('~', "~0").replace('/', "~1")
 }
 
+/// What can be used of a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sound {
+    /// The value, with null in place of each part that breaks a rule.
+    pub value: Value,
+    /// The fields at the top that break a rule, or have a part that does, in the order of the check; an empty name is the value itself.
+    pub broken: Vec<String>,
+}
+
 /// A schema with the schemas that it names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
@@ -77,6 +86,21 @@ impl Record {
     /// characters), lists, objects, `allOf`, `anyOf`, `oneOf`, `$ref`. [`Record::unsupported`] names what else a schema holds.
     pub fn check(&self, value: &Value) -> Vec<FieldError> {
         Check::of(self, value)
+    }
+
+    /// What can be used of a value that came from outside: every part that breaks a rule is null in it.
+    pub fn sound(&self, value: &Value) -> Sound {
+        let (mut value, mut broken) = (value.clone(), Vec::new());
+        for FieldError { pointer, .. } in self.check(&value) {
+            if let Some(part) = value.pointer_mut(&pointer) {
+                *part = Value::Null;
+            }
+            let field = pointer.split('/').nth(1).unwrap_or_default().replace("~1", "/").replace("~0", "~");
+            if !broken.contains(&field) {
+                broken.push(field);
+            }
+        }
+        Sound { value, broken }
     }
 
     /// Keywords of the schema that [`Record::check`] does not hold a value to, sorted.

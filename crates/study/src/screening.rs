@@ -2,7 +2,9 @@
 
 use crate::answers::{Given, Participant, blocks, trials_asked};
 use crate::definition::StudyDefinition;
+use crate::visits::Flag;
 use serde::Serialize;
+use std::fmt;
 use utoipa::ToSchema;
 
 /// Why a participant is left out.
@@ -28,6 +30,11 @@ pub enum Exclusion {
         /// How many trials there were.
         trials: u32,
     },
+    /// Something was noticed of the session that the rules leave out for.
+    Flagged {
+        /// What was noticed.
+        flag: Flag,
+    },
     /// The study was not finished.
     Incomplete {
         /// How many trials were answered.
@@ -37,11 +44,32 @@ pub enum Exclusion {
     },
 }
 
+impl fmt::Display for Exclusion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = |n: &u32, what: &str| format!("{n} {what}{}", if *n == 1 { "" } else { "s" });
+        match self {
+            Exclusion::TooFast { trials, allowed } => {
+                write!(f, "{} too fast, {allowed} allowed", count(trials, "answer"))
+            }
+            Exclusion::FailedCatchTrials { trials, allowed } => {
+                write!(f, "{} failed, {allowed} allowed", count(trials, "catch trial"))
+            }
+            Exclusion::StraightLining { trials } => {
+                write!(f, "the same side in all {}", count(trials, "trial"))
+            }
+            Exclusion::Flagged { flag } => f.write_str(flag.meaning()),
+            Exclusion::Incomplete { answered, trials } => {
+                write!(f, "{answered} of {} answered", count(trials, "trial"))
+            }
+        }
+    }
+}
+
 /// Fewest trials in which always choosing one place says anything: by chance it happens once in 2⁴ times then.
 const STRAIGHT: usize = 5;
 
-/// Every reason of the study's rules to leave this participant out; none: they stay.
-pub fn screen(study: &StudyDefinition, participant: &Participant) -> Vec<Exclusion> {
+/// Every reason of the study's rules to leave this participant out, of whose session `flags` were noticed; none: they stay.
+pub fn screen(study: &StudyDefinition, participant: &Participant, flags: &[Flag]) -> Vec<Exclusion> {
     let rules = &study.screening;
     let answers = participant.answers();
     let count = |is: &dyn Fn(&Given) -> bool| answers.iter().filter(|a| is(a)).count() as u32;
@@ -66,6 +94,8 @@ pub fn screen(study: &StudyDefinition, participant: &Participant) -> Vec<Exclusi
             reasons.push(Exclusion::StraightLining { trials: answers.len() as u32 });
         }
     }
+    let flagged = flags.iter().filter(|flag| rules.flags.contains(flag));
+    reasons.extend(flagged.map(|flag| Exclusion::Flagged { flag: *flag }));
     if rules.incomplete {
         let (answered, trials) = (answers.len() as u32, trials_asked(study, participant) as u32);
         if answered < trials {
@@ -122,36 +152,36 @@ mod tests {
     fn each_rule_excludes_beyond_its_limit_and_not_at_it() {
         let fast = study("min_rt_ms = 200, max_fast_trials = 1");
         let once = seen(&fast, &MIXED, [100.0, 200.0, 900.0, 900.0, 900.0, 900.0], ["pa"; 3]);
-        assert!(screen(&fast, &once).is_empty(), "200 ms is not faster than 200 ms, and one is allowed");
+        assert!(screen(&fast, &once, &[]).is_empty(), "200 ms is not faster than 200 ms, and one is allowed");
         let twice = seen(&fast, &MIXED, [100.0, 199.9, 900.0, 900.0, 900.0, 900.0], ["pa"; 3]);
-        assert_eq!(screen(&fast, &twice), [Exclusion::TooFast { trials: 2, allowed: 1 }]);
+        assert_eq!(screen(&fast, &twice, &[]), [Exclusion::TooFast { trials: 2, allowed: 1 }]);
 
         let catch = study("max_failed_catch_trials = 1");
         let slow = [900.0; 6];
-        assert!(screen(&catch, &seen(&catch, &MIXED, slow, ["pa", "mc", "pa"])).is_empty());
-        let failed = screen(&catch, &seen(&catch, &MIXED, slow, ["mc", "mc", "pa"]));
+        assert!(screen(&catch, &seen(&catch, &MIXED, slow, ["pa", "mc", "pa"]), &[]).is_empty());
+        let failed = screen(&catch, &seen(&catch, &MIXED, slow, ["mc", "mc", "pa"]), &[]);
         assert_eq!(failed, [Exclusion::FailedCatchTrials { trials: 2, allowed: 1 }]);
 
         let straight = study("straight_lining = true");
-        assert!(screen(&straight, &seen(&straight, &MIXED, slow, ["pa"; 3])).is_empty());
+        assert!(screen(&straight, &seen(&straight, &MIXED, slow, ["pa"; 3]), &[]).is_empty());
         for side in [true, false] {
             let same = |n: usize| seen(&straight, &[side; 6][..n], slow, ["pa"; 3]);
-            assert_eq!(screen(&straight, &same(6)), [Exclusion::StraightLining { trials: 6 }]);
-            assert!(screen(&straight, &same(4)).is_empty(), "four of a kind say nothing");
+            assert_eq!(screen(&straight, &same(6), &[]), [Exclusion::StraightLining { trials: 6 }]);
+            assert!(screen(&straight, &same(4), &[]).is_empty(), "four of a kind say nothing");
         }
 
         let incomplete = study("incomplete = true");
-        assert!(screen(&incomplete, &seen(&incomplete, &MIXED, slow, ["pa"; 3])).is_empty());
+        assert!(screen(&incomplete, &seen(&incomplete, &MIXED, slow, ["pa"; 3]), &[]).is_empty());
         let five = &seen(&incomplete, &MIXED[..5], slow, ["pa"; 3]);
-        assert_eq!(screen(&incomplete, five), [Exclusion::Incomplete { answered: 5, trials: 6 }]);
+        assert_eq!(screen(&incomplete, five, &[]), [Exclusion::Incomplete { answered: 5, trials: 6 }]);
     }
 
     #[test]
     fn without_rules_nobody_is_left_out_and_with_all_every_reason_is_given() {
         let none = study("");
-        assert!(screen(&none, &seen(&none, &[true; 6], [1.0; 6], ["mc"; 3])).is_empty());
+        assert!(screen(&none, &seen(&none, &[true; 6], [1.0; 6], ["mc"; 3]), &[]).is_empty());
         let all =
             study("min_rt_ms = 200, max_failed_catch_trials = 0, straight_lining = true, incomplete = true");
-        assert_eq!(screen(&all, &seen(&all, &[true; 5], [1.0; 6], ["mc"; 3])).len(), 4);
+        assert_eq!(screen(&all, &seen(&all, &[true; 5], [1.0; 6], ["mc"; 3]), &[]).len(), 4);
     }
 }

@@ -2,6 +2,7 @@
 import { type JsPsych, type JsPsychPlugin, ParameterType, type PluginInfo } from "jspsych";
 import type { Study, Trial } from "../api.ts";
 import type { Pictures } from "../stimuli.ts";
+import type { Plain } from "../words/index.ts";
 
 export interface TrialModule {
   /** The jsPsych plugin that shows it; its name is the kind's. */
@@ -16,11 +17,12 @@ export interface TrialModule {
   refusal?(trial: Trial, periodMs: number | null): string | null;
 }
 
+/** Its words are messages without arguments, said when the page is shown. */
 export interface Legend {
   /** Said only where a study has several kinds of trial. */
-  title: string;
+  title: Plain;
   /** The keys of each answer, in the order in which they lie on the keyboard. */
-  answers: ReadonlyArray<{ keys: readonly string[]; label: string }>;
+  answers: ReadonlyArray<{ keys: readonly string[]; label: Plain }>;
 }
 
 /** What the page gives to every kind of trial. */

@@ -143,7 +143,7 @@ test("scale and width are those that the participant saw, pinch zoom included", 
 /** jsPsych's own simulation of a kind, in a page without our server. */
 async function simulate(page, kind, mode) {
   const stdin = { contents: 'import { simulate } from "./simulate.ts"; globalThis.simulate = simulate;', resolveDir: import.meta.dirname, loader: "ts" };
-  const { outputFiles } = await build({ stdin, bundle: true, write: false, format: "iife", target: "es2022", logLevel: "error" });
+  const { outputFiles } = await build({ stdin, bundle: true, loader: { ".ftl": "text" }, write: false, format: "iife", target: "es2022", logLevel: "error" });
   await page.setContent("<main></main>");
   await page.addScriptTag({ content: outputFiles[0].text });
   return page.evaluate(([kind, mode]) => globalThis.simulate(kind, mode), [kind, mode]);

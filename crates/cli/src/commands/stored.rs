@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use kelir_report::StudyReport;
 use kelir_server::results::{self, ResultsError};
-use kelir_server::{Selection, SelectionError, Store, VersionRef, With};
+use kelir_server::{Include, Selection, SelectionError, Store, VersionRef, With};
 
 use crate::bad_input;
 
@@ -29,6 +29,9 @@ pub struct Versions {
     /// Versions whose answers count with that one's, separated by commas, or `all`.
     #[arg(long, default_value = "", hide_default_value = true, value_parser = parse::<With>)]
     pub with: With,
+    /// Kinds of sessions that are judged like participants': pilot, simulated, or both, separated by a comma.
+    #[arg(long, default_value = "", hide_default_value = true, value_parser = parse::<Include>)]
+    pub include: Include,
 }
 
 fn parse<T: std::str::FromStr<Err = SelectionError>>(text: &str) -> Result<T, String> {
@@ -51,17 +54,20 @@ pub fn results_error(error: ResultsError) -> anyhow::Error {
 impl Stored {
     /// The full report of the versions asked for.
     pub fn report(&self, study: &str) -> Result<StudyReport> {
-        let Versions { version, with } = &self.versions;
         block_on(async {
-            results::report_of_study(&self.data, study, version, with).await.map_err(results_error)
+            let (store, selection) = self.open(study).await?;
+            let report = results::report(&store, &selection).await;
+            store.close().await;
+            Ok(report?)
         })
     }
 
     /// The store of the data folder, with the versions asked for.
     pub async fn open(&self, study: &str) -> Result<(Store, Selection)> {
         let store = results::open_study(&self.data, study).await.map_err(results_error)?;
-        let Versions { version, with } = &self.versions;
+        let Versions { version, with, include } = &self.versions;
         let selection = Selection::of(&store, study, None, version, with).await;
-        Ok((store, selection.map_err(|error| results_error(error.into()))?))
+        let selection = selection.map_err(|error| results_error(error.into()))?;
+        Ok((store, selection.including(include.clone())))
     }
 }

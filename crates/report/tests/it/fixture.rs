@@ -164,7 +164,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
     let everybody = answers.participants();
     let (mut judged, mut excluded) = (Vec::<&Participant>::new(), Vec::new());
     for &participant in &everybody {
-        let reasons = screen(&design, participant);
+        let reasons = screen(&design, participant, &[]);
         if reasons.is_empty() {
             judged.push(participant);
         } else {

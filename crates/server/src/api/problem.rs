@@ -5,6 +5,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use kelir_store::StoreError;
 use kelir_study::schema::{FieldError, worded};
+use kelir_study::visits::RefusedId;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -37,6 +38,10 @@ worded! {
         NoConsent = "no_consent",
         /// The trial has another answer already; `stored` is what stands.
         AlreadyAnswered = "already_answered",
+        /// Somebody with this id has begun the study already; whoever that is goes on in the browser where it was.
+        AlreadyBegun = "already_begun",
+        /// Somebody with this id has finished the study already; the code is shown in the browser where it was.
+        AlreadyFinished = "already_finished",
         /// Trials have no answer yet: those in `missing`, or others that are still to be decided where `more` is true.
         Incomplete = "incomplete",
         /// The body is larger than the address takes.
@@ -67,9 +72,11 @@ impl ProblemCode {
             ProblemCode::Unauthorized | ProblemCode::WrongPassword => StatusCode::UNAUTHORIZED,
             ProblemCode::NotFound => StatusCode::NOT_FOUND,
             ProblemCode::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
-            ProblemCode::NoConsent | ProblemCode::AlreadyAnswered | ProblemCode::Incomplete => {
-                StatusCode::CONFLICT
-            }
+            ProblemCode::NoConsent
+            | ProblemCode::AlreadyAnswered
+            | ProblemCode::AlreadyBegun
+            | ProblemCode::AlreadyFinished
+            | ProblemCode::Incomplete => StatusCode::CONFLICT,
             ProblemCode::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             ProblemCode::NotJson => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             ProblemCode::InvalidField => StatusCode::UNPROCESSABLE_ENTITY,
@@ -176,6 +183,13 @@ impl Problem {
     /// One parameter that breaks a rule.
     pub fn parameter(name: &str, value: &str, rule: impl Into<String>) -> Box<Problem> {
         Problem::fields(ProblemCode::InvalidParameter, vec![FieldError::at(name, value, rule)])
+    }
+
+    /// An id that cannot be taken, by the parameter that it came in.
+    pub(crate) fn refused_id(RefusedId { name, value, rule }: RefusedId) -> Box<Problem> {
+        let mut error = FieldError::at(&name, value, rule);
+        error.pointer.insert_str(0, "/params");
+        Problem::fields(ProblemCode::InvalidField, vec![error])
     }
 
     pub(crate) fn not_found(what: &str) -> Box<Problem> {

@@ -4,6 +4,7 @@ use super::Study;
 use kelir_study::Kind;
 use kelir_study::schema::worded;
 use kelir_study::trials::{Role, TrialName, TrialSettings};
+use kelir_study::visits::{ID_PARAMETERS, LONGEST_ID, SessionKind};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -19,6 +20,8 @@ pub struct NewSession {
     pub params: Option<BTreeMap<String, String>>,
     /// What the browser says about its display; kept as it comes.
     pub display: Option<Map<String, Value>>,
+    /// Whose session it is; only who is signed in may begin one that is no participant's.
+    pub kind: Option<SessionKind>,
 }
 
 /// At most 64 texts; the longest names and values that are taken.
@@ -28,11 +31,12 @@ fn parameters() -> Object {
         .schema_type(SchemaType::from_iter([Type::Object, Type::Null]))
         .max_properties(Some(64))
         .property_names(Some(text(64)))
-        .additional_properties(Some(text(512)))
-        .description(Some(
-            "The parameters of the address that they came by. The first of `PROLIFIC_PID`, `workerId`, `subject_id` and `id` that is a \
-             plain name names the participant.",
-        ))
+        .additional_properties(Some(text(1024)))
+        .description(Some(format!(
+            "The parameters of the address that they came by. The participant is named by the one that the study file says, or else by the \
+             first that is there of {}; an id has at most {LONGEST_ID} bytes and no control characters.",
+            ID_PARAMETERS.map(|name| format!("`{name}`")).join(", ")
+        )))
         .build()
 }
 
@@ -95,6 +99,8 @@ pub struct SessionState {
     pub study: Study,
     /// How far it is.
     pub status: SessionStatus,
+    /// Whether the link named the participant: who comes by it again is the same person.
+    pub named: bool,
     /// Whether consent has been given.
     pub consented: bool,
     /// The trials that are decided so far, by index from 0. The list only grows.

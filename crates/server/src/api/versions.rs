@@ -1,7 +1,7 @@
 //! Which version of a study is meant, and which others count with it.
 
 use super::{Problem, ProblemCode};
-use crate::selection::{RULE, SelectionError, VersionRef, With};
+use crate::selection::{INCLUDE_RULE, Include, RULE, SelectionError, VersionRef, With};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -11,6 +11,8 @@ use utoipa::IntoParams;
 pub struct Pooling {
     /// Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's.
     pub with: Option<String>,
+    /// Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma.
+    pub include: Option<String>,
 }
 
 /// Reads the version in an address.
@@ -30,6 +32,15 @@ impl Pooling {
         let text = self.with.as_deref().unwrap_or_default();
         text.parse().map_err(|_: SelectionError| Problem::parameter("with", text, RULE))
     }
+
+    /// The kinds of sessions asked for.
+    ///
+    /// # Errors
+    /// One of them is none, or named twice.
+    pub fn include(&self) -> Result<Include, Box<Problem>> {
+        let text = self.include.as_deref().unwrap_or_default();
+        text.parse().map_err(|_: SelectionError| Problem::parameter("include", text, INCLUDE_RULE))
+    }
 }
 
 impl From<SelectionError> for Box<Problem> {
@@ -37,6 +48,7 @@ impl From<SelectionError> for Box<Problem> {
         match error {
             SelectionError::Store(error) => error.into(),
             SelectionError::Malformed(text) => Problem::parameter("version", &text, RULE),
+            SelectionError::MalformedKinds(text) => Problem::parameter("include", &text, INCLUDE_RULE),
             SelectionError::Unknown(..) => Problem::not_found("version of this study"),
             SelectionError::NoVersion => {
                 Problem::not_found("version of this study yet: its stimuli are not all made")

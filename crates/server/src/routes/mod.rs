@@ -40,7 +40,7 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(sessions::create_session),
         routes!(sessions::get_session),
         routes!(sessions::give_consent),
-        routes!(sessions::put_answer).layer(DefaultBodyLimit::max(TRIAL_LIMIT)),
+        routes!(sessions::put_answer, sessions::post_answer).layer(DefaultBodyLimit::max(TRIAL_LIMIT)),
         routes!(sessions::complete_session),
         routes!(stimuli::get_session_stimulus),
         routes!(stimuli::get_stimulus),

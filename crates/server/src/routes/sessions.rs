@@ -6,24 +6,21 @@ use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, Trial, refusals,
 };
-use crate::app::{App, Begun};
-use crate::extract::{Body, Object, Parameters, Participant, Query};
+use crate::app::App;
+use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
 use crate::making::StimulusMap;
 use crate::password::{random_code, random_token};
 use axum::extract::State;
-use axum::http::StatusCode;
+use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{
-    Appended, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session, SessionKind,
-    StimulusHashes, sha256_hex,
+    Appended, Begun, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session,
+    SessionKind, StimulusHashes, sha256_hex,
 };
 use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use utoipa::IntoParams;
-
-/// Parameters by which recruiting panels name their participants, in order of preference.
-const SUBJECT_PARAMS: [&str; 4] = ["PROLIFIC_PID", "workerId", "subject_id", "id"];
 
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Path)]
@@ -44,9 +41,12 @@ pub(crate) struct TrialPath {
     trial_index: String,
 }
 
-refusals!(NotCreated: NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
+refusals!(NotCreated: Unauthorized, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
 
 /// Begin a session. The answer holds its token, which is told this once.
+///
+/// Where somebody with the same id has begun before, the study file says what happens: another session begins, flagged; the one that is there
+/// goes on, with a new token in place of the old one; or none does.
 #[utoipa::path(
     post, path = "/api/v1/studies/{study}/sessions", tag = "participants", params(StudyPath), request_body = NewSession,
     responses((status = CREATED, description = "The session.", body = CreatedSession), NotCreated)
@@ -54,22 +54,31 @@ refusals!(NotCreated: NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJs
 pub(crate) async fn create_session(
     State(app): State<Arc<App>>,
     Parameters(StudyPath { study }): Parameters<StudyPath>,
+    SignedIn(researcher): SignedIn,
+    headers: HeaderMap,
     Body(new): Body<NewSession>,
 ) -> Result<(StatusCode, Fresh<CreatedSession>), Box<Problem>> {
     let loaded = app.study(&study)?;
     let served = loaded.ready()?;
     let token = random_token();
     let params = new.params.unwrap_or_default();
+    let kind = new.kind.unwrap_or_default();
+    if kind != SessionKind::Participant && researcher.is_none() {
+        let detail = "Sign in first: a session that is no participant's is a researcher's.";
+        return Err(Problem::new(ProblemCode::Unauthorized, detail));
+    }
+    let person = loaded.study.session.identify(&params).map_err(Problem::refused_id)?;
     let new = kelir_store::NewSession {
         study_id: loaded.study.id.clone(),
         version: served.version.clone(),
         file_hash: loaded.file_hash.clone(),
-        subject_id: subject(&params),
+        subject_id: person.map(|(_, id)| id.to_owned()),
         token_hash: sha256_hex(token.as_bytes()),
-        kind: SessionKind::Participant,
+        kind,
         flags: Vec::new(),
+        repeat: loaded.study.session.repeat,
         start_key: None,
-        user_agent: None,
+        user_agent: user_agent(&headers),
         params: params.into_iter().collect(),
         display: new.display.unwrap_or_default().into(),
         idle: loaded.idle(),
@@ -79,9 +88,29 @@ pub(crate) async fn create_session(
         let next = NextTrials { trials: planned(&served.stimuli, trials)?, more };
         Ok::<_, Box<Problem>>(PlannedSession { seed, next })
     };
-    let session = app.store.create_session(new, plan).await?;
+    let session = match app.store.create_session(new, plan).await? {
+        Begun::New(session) | Begun::Again(session) => session,
+        Begun::Refused { is_finished } => return Err(taken(is_finished)),
+    };
     let state = state_of(&app, &session).await?;
     Ok((StatusCode::CREATED, Fresh(CreatedSession { state, token })))
+}
+
+/// Why the person of a link does not begin anew. The code is told to nobody but the browser that holds the session's token: an id can be guessed.
+fn taken(is_finished: bool) -> Box<Problem> {
+    if is_finished {
+        let detail = "This study has been finished with this link, and can be taken once. Its code is shown in the browser where it was finished.";
+        return Problem::new(ProblemCode::AlreadyFinished, detail);
+    }
+    let detail = "This study has been begun with this link, and can be taken once. Please go on in the browser where it was begun.";
+    Problem::new(ProblemCode::AlreadyBegun, detail)
+}
+
+/// What the browser calls itself, at most 512 characters of it.
+fn user_agent(headers: &HeaderMap) -> Option<String> {
+    let sent = String::from_utf8_lossy(headers.get(header::USER_AGENT)?.as_bytes());
+    Some(sent.chars().filter(|c| !c.is_control()).take(512).collect())
+        .filter(|name: &String| !name.is_empty())
 }
 
 /// Trials with their stimuli filled in.
@@ -136,8 +165,8 @@ refusals!(NotStored: Unauthorized, NotFound, InvalidParameter, BadBody, BadJson,
 
 /// Answer a trial. The same answer may be sent again; another one is refused, and the first one stands.
 ///
-/// What the trial's kind asks for is held to its rules; keys beside it are kept as they come. An acknowledgement means that the answer is
-/// on disk.
+/// Only the choice is asked of an answer: whatever else is in it is kept as it comes, and what breaks a rule of the schema is named in the
+/// responses' `flags` and stands in no other column. An acknowledgement means that the answer is on disk.
 #[utoipa::path(
     put, path = "/api/v1/sessions/{session}/trials/{trial_index}", tag = "participants", security(("session" = [])),
     params(TrialPath, Known), request_body = Answer,
@@ -187,8 +216,24 @@ pub(crate) async fn put_answer(
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
 }
 
+/// Answer a trial, where what lies between browser and server lets no PUT pass: the same as PUT.
+#[utoipa::path(
+    post, path = "/api/v1/sessions/{session}/trials/{trial_index}", tag = "participants", security(("session" = [])),
+    params(TrialPath, Known), request_body = Answer,
+    responses((status = OK, description = "It is stored.", body = Acknowledgement), NotStored)
+)]
+pub(crate) async fn post_answer(
+    participant: Participant,
+    app: State<Arc<App>>,
+    address: Parameters<TrialPath>,
+    known: Query<Known>,
+    body: Object,
+) -> Answered<Acknowledgement> {
+    put_answer(participant, app, address, known, body).await
+}
+
 /// What follows in a session from what it was shown and answered.
-fn next_of(begun: &Begun, slot: u32, progress: &Progress) -> Result<NextTrials, Box<Problem>> {
+fn next_of(begun: &crate::app::Begun, slot: u32, progress: &Progress) -> Result<NextTrials, Box<Problem>> {
     let study = &begun.study;
     let chose_target = |index: u32| {
         let trial = &progress.trials.get(index as usize)?.trial;
@@ -249,6 +294,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         study_id: session.study_id.clone(),
         study: told(&study),
         status,
+        named: session.subject_id != session.session_id,
         consented: session.consented_at.is_some(),
         more: session.more,
         most_trials: if session.more { study.most_trials() } else { trials.len() },
@@ -289,14 +335,4 @@ async fn trials_of(
 fn completion(study: &StudyDefinition, session: &Session, completion_code: String) -> Completion {
     let params = BTreeMap::deserialize(&session.params).unwrap_or_default();
     Completion { redirect: study.completion.redirect_to(&completion_code, &params), completion_code }
-}
-
-/// The panel's name for the participant; only what can stand in a file name and starts no spreadsheet formula.
-fn subject(params: &BTreeMap<String, String>) -> Option<String> {
-    let plain = |s: &&String| {
-        (1..=128).contains(&s.len())
-            && s.starts_with(|c: char| c.is_ascii_alphanumeric())
-            && s.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_')
-    };
-    SUBJECT_PARAMS.iter().filter_map(|name| params.get(*name)).find(plain).cloned()
 }

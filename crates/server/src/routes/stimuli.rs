@@ -73,7 +73,7 @@ refusals!(Stimulus: NotFound, Unauthorized);
 ///
 /// An animation is JSON (`application/vnd.kelir.animation+json`) that names its frames by hash.
 #[utoipa::path(
-    get, path = "/stimuli/{sha256}", tag = "researchers", params(StimulusPath), security(("researcher" = [])),
+    get, path = "/stimuli/{sha256}", tag = "studies", params(StimulusPath), security(("researcher" = [])),
     responses(
         (status = OK, description = "The bytes.", content(
             (inline(Bytes) = "image/png"), (inline(Bytes) = "image/jpeg"), (serde_json::Value = "application/vnd.kelir.animation+json")

@@ -31,7 +31,8 @@ type File = Result<Response, Box<Problem>>;
 
 /// The versions that are asked for.
 async fn chosen(app: &App, path: &VersionPath, pooling: &Pooling) -> Result<Selection, Box<Problem>> {
-    app.select(&path.study, &version_ref(&path.version)?, &pooling.with()?).await
+    let selection = app.select(&path.study, &version_ref(&path.version)?, &pooling.with()?).await?;
+    Ok(selection.including(pooling.include()?))
 }
 
 /// The results in short: the paper's test for each block, the scale, the stimuli.

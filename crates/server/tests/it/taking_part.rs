@@ -76,6 +76,71 @@ async fn the_first_answer_stands() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn whatever_a_browser_or_its_clock_makes_of_an_answer_is_stored_and_the_code_given() {
+    let client = Client::ready().await;
+    let (path, token, _) = client.join(json!({ "id": "odd" })).await;
+    let odd = [
+        json!({ "choice": "left" }),
+        json!({ "choice": "right", "rt": -3.5, "onset": -1e9, "viewport": "1280x800", "frames": [], "timestamp": {}, "input": "nose" }),
+        json!({ "choice": "left", "rt": null, "scale": "1", "refresh_hz": 1e300, "reload_count": 0.5, "plugin_version": "x".repeat(9999) }),
+    ];
+    for (trial, sent) in odd.iter().enumerate() {
+        let method = if trial == 1 { "POST" } else { "PUT" };
+        let answer = client.call(method, &format!("{path}/trials/{trial}"), &token, sent).await;
+        assert_eq!(answer.status, StatusCode::OK, "{}", answer.text());
+    }
+    let done = client.call("POST", &format!("{path}/completion"), &token, &Value::Null).await;
+    assert!(done.json()["completion_code"].is_string(), "{}", done.text());
+
+    let cookie = client.sign_in().await;
+    let at = |table| format!("/api/v1/studies/shadow-puppets/versions/current/{table}");
+    let csv = client.research(&cookie, &at("responses.csv")).await.text();
+    // Commas between an even number of quotation marks part cells.
+    let cells_of = |line: &str| {
+        let mut quoted = false;
+        let part = |c: char| {
+            quoted ^= c == '"';
+            c == ',' && !quoted
+        };
+        line.split(part).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let mut rows = csv.lines().map(cells_of);
+    let names = rows.next().unwrap();
+    let column = |name: &str| names.iter().position(|n| n == name).unwrap();
+    let cells: Vec<_> = rows.map(|row| [row[column("flags")].clone(), row[column("rt")].clone()]).collect();
+    let flags =
+        ["rt", "frames input onset rt timestamp viewport", "plugin_version reload_count rt scale refresh_hz"];
+    for (cells, flags) in cells.iter().zip(flags) {
+        let sorted =
+            |text: &str| text.split(' ').map(str::to_owned).collect::<std::collections::BTreeSet<_>>();
+        assert_eq!((sorted(&cells[0]), cells[1].as_str()), (sorted(flags), ""));
+    }
+    let results = client.research(&cookie, &at("results")).await;
+    assert_eq!(results.status, StatusCode::OK, "{}", results.text());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_session_knows_what_its_browser_called_itself() {
+    let client = Client::ready().await;
+    let named = |name: Vec<u8>| {
+        axum::http::Request::post("/api/v1/studies/shadow-puppets/sessions")
+            .header("content-type", "application/json")
+            .header("user-agent", axum::http::HeaderValue::from_bytes(&name).unwrap())
+            .body(axum::body::Body::from("{}"))
+            .unwrap()
+    };
+    for (sent, kept) in [
+        (b"Tamasha/1.0".to_vec(), "Tamasha/1.0".to_owned()),
+        ([b"\xff".as_slice(), &[b'x'; 999]].concat(), format!("\u{fffd}{}", "x".repeat(511))),
+    ] {
+        let state = client.send(named(sent)).await.json();
+        let session =
+            client.server.store().session(state["session_id"].as_str().unwrap()).await.unwrap().unwrap();
+        assert_eq!(session.user_agent, Some(kept));
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn nothing_is_stored_before_consent() {
     let client = Client::ready().await;
     let state = client.call("POST", "/api/v1/studies/shadow-puppets/sessions", "", &json!({})).await.json();

@@ -32,6 +32,7 @@ async fn take(store: &Store, people: usize) {
             token_hash: "t".to_owned(),
             kind: Default::default(),
             flags: Vec::new(),
+            repeat: Default::default(),
             start_key: None,
             user_agent: None,
             params: serde_json::json!({}),
@@ -47,7 +48,10 @@ async fn take(store: &Store, people: usize) {
             let trials = plan.trials.into_iter().map(filled).collect();
             Ok::<_, StoreError>(PlannedSession { seed: plan.seed, next: NextTrials { trials, more: false } })
         };
-        sessions.push((study.blocks[0].trial.rules(), store.create_session(new, plan).await.unwrap()));
+        sessions.push((
+            study.blocks[0].trial.rules(),
+            store.create_session(new, plan).await.unwrap().session().unwrap(),
+        ));
     }
     for trial_index in 0..3u32 {
         for (i, (rules, session)) in sessions.iter().enumerate() {
@@ -74,7 +78,12 @@ async fn as_rows_say(store: &Store, study: &StudyDefinition, versions: &[String]
         let shown: Shown<'_> = row.shown.iter().map(|(role, shown)| (*role, placed(shown))).collect();
         let rules = rules(&row.trial_kind).unwrap();
         let observation = rules.observe(&shown, row.answer.as_deref().unwrap()).unwrap();
-        answers.push(Row { session_id: &row.session_id, trial_index: row.trial_index, observation });
+        answers.push(Row {
+            session_id: &row.session_id,
+            trial_index: row.trial_index,
+            observation,
+            received_us: crate::clock::micros(&row.received_at),
+        });
     }
     assert_eq!(answers.len(), rows.len());
     answers

@@ -126,6 +126,7 @@ async fn holds(
         token_hash: "t".to_owned(),
         kind: Default::default(),
         flags: Vec::new(),
+        repeat: Default::default(),
         start_key: None,
         user_agent: None,
         params: case.payload.clone(),
@@ -134,7 +135,7 @@ async fn holds(
     };
     let next = NextTrials { trials: vec![planned.clone()], more: false };
     let plan = |_| Ok::<_, StoreError>(PlannedSession { seed: "s".to_owned(), next });
-    let session = store.create_session(new, plan).await.unwrap();
+    let session = store.create_session(new, plan).await.unwrap().session().unwrap();
     prop_assert_eq!(&store.trials(&session.session_id).await.unwrap(), &[planned]);
     let back = store.session(&session.session_id).await.unwrap().unwrap();
     prop_assert_eq!((&back.params, &back.display), (&case.payload, &case.answer));

@@ -60,6 +60,7 @@ async fn a_session_whose_plan_fails_is_not_there() {
         token_hash: "t".to_owned(),
         kind: Default::default(),
         flags: Vec::new(),
+        repeat: Default::default(),
         start_key: None,
         user_agent: None,
         params: session.params.clone(),

@@ -155,13 +155,14 @@ pub async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
         token_hash: "t".to_owned(),
         kind: Default::default(),
         flags: Vec::new(),
+        repeat: Default::default(),
         start_key: None,
         user_agent: None,
         params: json!({}),
         display: json!({}),
         idle,
     };
-    store.create_session(new, |slot| Ok::<_, StoreError>(served.plan(slot))).await.unwrap()
+    store.create_session(new, |slot| Ok::<_, StoreError>(served.plan(slot))).await.unwrap().session().unwrap()
 }
 
 /// An answer as a page sends it to a kind of trial.

@@ -60,7 +60,7 @@ async fn a_folder_with_answers_says_what_it_said() {
     store.read_on(&mut stored).await.unwrap();
     let answers = stored.answers();
     let (kept, excluded): (Vec<_>, Vec<_>) =
-        answers.participants().into_iter().partition(|p| screen(&version.study, p).is_empty());
+        answers.participants().into_iter().partition(|p| screen(&version.study, p, &[]).is_empty());
     let ids = |key: &str| -> Vec<String> {
         let listed = stats[key].as_array().unwrap();
         listed.iter().map(|e| e["session_id"].as_str().unwrap().to_owned()).collect()

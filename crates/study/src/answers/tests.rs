@@ -172,7 +172,7 @@ proptest! {
         agree(&study, &counted, &everybody)?;
 
         let out = excluded(&study, &counted);
-        let reasons = |p: &Participant| screen(&study, p);
+        let reasons = |p: &Participant| screen(&study, p, &[]);
         let (kept, left_out): (Vec<&Participant>, Vec<&Participant>) =
             everybody.iter().copied().partition(|p| reasons(p).is_empty());
         prop_assert_eq!(left_out.iter().map(|p| p.session_id.to_string()).collect::<BTreeSet<_>>(), out.clone());
@@ -239,7 +239,7 @@ fn what_the_study_does_not_know_is_left_out() {
     let [given] = answers.participants()[0].answers()[..] else { panic!("one answer") };
     assert_eq!((given.item, given.chose_target, given.chose_first), (0, true, true));
     assert_eq!(
-        screen(&study, answers.participants()[0])[0],
+        screen(&study, answers.participants()[0], &[])[0],
         Exclusion::Incomplete { answered: 1, trials: 8 }
     );
 }

@@ -80,7 +80,10 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
             let mut payload = rules.simulate(chose_first, 812.5);
             payload["viewport"] = json!([1280, 800.5]);
             payload["requested_ms"] = json!({ "mask": 250 });
+            payload["hidden_ms"] = json!(0);
+            payload["onset"] = json!(-1);
             let checked = rules.check(&payload).map_or_else(|_| String::new(), |checked| checked.answer);
+            let broken = if trial.trial.name() == "two-interval" { "requested_ms onset" } else { "onset" };
             let answer = if trial.trial.name() == "two-interval" {
                 json!({ "choice": roles[usize::from(!chose_first)].as_str(), "rt_ms": 812.5 }).to_string()
             } else {
@@ -119,6 +122,7 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
                 (cell("requested_ms_mask"), cell("status"), cell("chain_seq")),
                 ("250", "in progress", "7")
             );
+            assert_eq!((cell("flags"), cell("onset"), cell("hidden_ms")), (broken, "", "0"));
         }
     }
 }

@@ -293,7 +293,7 @@ fn adaptive_and_two_interval_blocks_are_taken_by_their_own_plans() {
         for participant in answers.participants() {
             let own = participant.answers_to(block);
             assert!(own.len() as f64 <= trials, "{}", own.len());
-            let screened = screen(&design.study, participant);
+            let screened = screen(&design.study, participant, &[]);
             // Who saw the procedure to its end and the block after it is complete; the others are told so.
             let complete = own.len() as f64 == trials && participant.answers().len() == own.len() + 2;
             assert_eq!(screened.is_empty(), complete, "{screened:?}");

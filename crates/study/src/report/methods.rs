@@ -86,10 +86,14 @@ fn screening(study: &StudyDefinition) -> String {
     if rules.straight_lining {
         excluded.push("who chose the same side in every trial".to_owned());
     }
+    excluded.extend(
+        rules.flags.iter().map(|flag| format!("of whose session it was noticed that {}", flag.meaning())),
+    );
     if rules.incomplete {
         excluded.push("who did not finish".to_owned());
     }
-    let counted = "Each block counts the participants who answered all its items.";
+    let counted = "Of each person one session was analysed, the first complete one (where none was complete, the first with answers); trial runs \
+         and simulations were not. Each block counts the participants who answered all its items.";
     if excluded.is_empty() {
         format!("The study file states no rules of exclusion, and nobody was excluded. {counted}")
     } else {

@@ -1,7 +1,7 @@
 //! What kinds of trials share in which one of two stimuli is chosen.
 
 use super::{Checked, Choice, Observation, Placed, Role, Shown, TrialName, TrialRules};
-use crate::schema::{FieldError, Record};
+use crate::schema::{FieldError, Record, Sound};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -12,7 +12,8 @@ use std::sync::LazyLock;
 struct Answer<'a> {
     #[serde(borrow)]
     choice: Cow<'a, str>,
-    rt_ms: f64,
+    /// Null where the page sent none that can be.
+    rt_ms: Option<f64>,
 }
 
 /// A kind of trial in which one of two stimuli is chosen. What a page sends has `choice`, a role's name, and `rt`.
@@ -48,11 +49,13 @@ impl TrialRules for ChoiceOfTwo {
     }
 
     fn check(&self, sent: &Value) -> Result<Checked, Vec<FieldError>> {
-        let errors = self.record.check(sent);
-        if !errors.is_empty() {
-            return Err(errors);
+        let Sound { value, broken } = self.record.sound(sent);
+        let no_answer = |field: &String| field.is_empty() || field == "choice";
+        if broken.iter().any(no_answer) {
+            let of = |error: &FieldError| matches!(error.pointer.as_str(), "" | "/choice");
+            return Err(self.record.check(sent).into_iter().filter(of).collect());
         }
-        let answer = json!({ "choice": sent["choice"], "rt_ms": sent["rt"] });
+        let answer = json!({ "choice": value["choice"], "rt_ms": value["rt"] });
         let whole = |error: kelir_jcs::Error| {
             vec![FieldError { pointer: String::new(), value: None, rule: error.to_string() }]
         };
@@ -69,7 +72,8 @@ impl TrialRules for ChoiceOfTwo {
         if !chose_first && answer.choice != self.roles[1].as_str() {
             return Err(format!("{:?} was chosen, which was not shown", answer.choice));
         }
-        self.chose(shown, chose_first, answer.rt_ms).ok_or_else(|| "a role has no stimulus".to_owned())
+        self.chose(shown, chose_first, answer.rt_ms.unwrap_or(f64::NAN))
+            .ok_or_else(|| "a role has no stimulus".to_owned())
     }
 
     fn chosen(&self, answer: &str) -> Option<Role> {

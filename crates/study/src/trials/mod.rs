@@ -103,7 +103,7 @@ pub(crate) fn owned<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Shown<
     Ok(shown.map(|(role, p)| (role, Placed { item: own(p.item), condition: own(p.condition) })).collect())
 }
 
-/// An answer that was found right.
+/// An answer that can be stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checked {
     /// What was answered, as canonical JSON: it is stored and hashed as it is.
@@ -128,7 +128,7 @@ pub struct Choice<'a> {
     pub second_condition: Cow<'a, str>,
     /// Whether the first was chosen.
     pub chose_first: bool,
-    /// Response time in ms.
+    /// Response time in ms; NaN where it is not known.
     pub rt_ms: f64,
 }
 
@@ -146,10 +146,11 @@ pub trait TrialRules: Sync {
     /// What is shown where, with the target before or after the other condition.
     fn plan(&self, item: &str, target: &str, other: &str, target_first: bool) -> Shown<'static>;
 
-    /// Checks what a page sent as an answer.
+    /// What a page sent, as an answer. Only what was chosen is asked of it: whatever else a browser, its clock or a network made of it can be
+    /// stored, and [`Record::sound`] of the kind's record tells what can be used.
     ///
     /// # Errors
-    /// Every field that is wrong.
+    /// Why it is no answer.
     fn check(&self, sent: &Value) -> Result<Checked, Vec<FieldError>>;
 
     /// What a page sends: the columns of its rows, their types, units, ranges and meanings.

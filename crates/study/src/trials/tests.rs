@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::schema::Sound;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use serde_json::json;
@@ -48,7 +49,7 @@ fn what_is_planned_is_what_is_observed_for_each_kind_order_and_choice() {
 }
 
 #[test]
-fn answers_that_break_a_rule_are_refused_with_field_value_and_rule() {
+fn what_breaks_a_rule_beside_the_choice_is_an_answer_without_it_and_named() {
     let good = json!({
         "choice": "left", "rt": 812.5, "onset": 100.25, "time_elapsed": 5000, "trial_type": "two-alternative", "plugin_version": "1",
         "input": "pen", "scale": 1.0, "arrangement": "stack", "device_pixel_ratio": 2, "viewport": [1280, 800], "refresh_hz": null,
@@ -57,35 +58,64 @@ fn answers_that_break_a_rule_are_refused_with_field_value_and_rule() {
     });
     let rules = TrialKind::TwoAlternative.rules();
     assert_eq!(rules.check(&good).unwrap().answer, r#"{"choice":"left","rt_ms":812.5}"#);
+    assert_eq!(rules.record().sound(&good).broken, Vec::<String>::new());
     let cases = [
-        ("choice", json!("first"), "\"left\" or \"right\""),
-        ("choice", json!(3), "\"left\" or \"right\""),
-        ("rt", json!(-1), "from 0 to 86400000"),
-        ("rt", json!(86_400_000.5), "from 0 to 86400000"),
-        ("rt", json!("fast"), "a number"),
-        ("onset", json!(-0.5), "from 0"),
-        ("scale", json!(101), "from 0 to 100"),
-        ("input", json!("nose"), "\"pen\""),
-        ("arrangement", json!("above"), "\"side\", \"stack\", \"beside\" or \"below\""),
-        ("viewport", json!([1280]), "a list of 2"),
-        ("viewport", json!([1280, "800"]), "a number"),
-        ("timestamp", json!("x".repeat(101)), "at most 100"),
-        ("reload_count", json!(1.5), "a whole number"),
+        ("rt", json!(-1)),
+        ("rt", json!(86_400_000.5)),
+        ("rt", json!("fast")),
+        ("rt", Value::Null),
+        ("onset", json!(-0.5)),
+        ("scale", json!(101)),
+        ("input", json!("nose")),
+        ("arrangement", json!("above")),
+        ("viewport", json!([1280])),
+        ("viewport", json!([1280, "800"])),
+        ("timestamp", json!("x".repeat(101))),
+        ("reload_count", json!(1.5)),
+        ("frames", json!({ "left": { "fps": -1, "shown": 24 } })),
+        ("frames", json!((0..999).map(|i| (i.to_string(), json!({}))).collect::<serde_json::Map<_, _>>())),
     ];
-    for (field, value, rule) in cases {
+    for (field, value) in cases {
         let mut sent = good.clone();
         sent[field] = value.clone();
-        let errors = rules.check(&sent).unwrap_err();
-        assert_eq!(errors.len(), 1, "{field} = {value}: {errors:?}");
-        assert!(
-            errors[0].pointer.starts_with(&format!("/{field}")) && errors[0].rule.contains(rule),
-            "{errors:?}"
+        let rt = if field == "rt" { "null" } else { "812.5" };
+        let answer = format!(r#"{{"choice":"left","rt_ms":{rt}}}"#);
+        assert_eq!(rules.check(&sent).unwrap().answer, answer, "{field} = {value}");
+        let Sound { value: sound, broken } = rules.record().sound(&sent);
+        assert_eq!(broken, [field], "{value}");
+        let shown = rules.plan("item", "target", "other", true);
+        let Observation::Choice(choice) = rules.observe(&shown, &answer).unwrap();
+        assert_eq!(choice.rt_ms.is_nan(), field == "rt");
+        assert_eq!(
+            rules.record().sound(&sound).broken.iter().filter(|name| *name != "rt").count(),
+            usize::from(field == "viewport")
         );
     }
-    let errors = rules.check(&json!({ "scale": -1, "viewport": 3 })).unwrap_err();
-    let pointers: Vec<_> = errors.iter().map(|error| error.pointer.as_str()).collect();
-    assert_eq!(pointers.iter().collect::<std::collections::BTreeSet<_>>().len(), 4, "{errors:?}");
-    assert!(rules.check(&json!([])).is_err() && rules.check(&Value::Null).is_err());
+    let half = rules
+        .record()
+        .sound(&json!({ "choice": "left", "rt": 1, "frames": { "left": { "fps": -1, "shown": 24 } } }));
+    assert_eq!(half.value["frames"]["left"], json!({ "fps": null, "shown": 24 }), "only what is wrong goes");
+    assert_eq!(
+        rules.record().sound(&json!({ "choice": "left" })).broken,
+        ["rt"],
+        "what is asked for and missing is named"
+    );
+}
+
+#[test]
+fn without_one_of_its_choices_it_is_no_answer() {
+    let rules = TrialKind::TwoAlternative.rules();
+    for choice in [json!("first"), json!(3), Value::Null] {
+        let errors = rules.check(&json!({ "choice": choice, "rt": -1, "scale": -1 })).unwrap_err();
+        assert_eq!(errors.len(), 1, "{errors:?}");
+        assert_eq!(
+            (errors[0].pointer.as_str(), errors[0].rule.contains("\"left\" or \"right\"")),
+            ("/choice", true)
+        );
+    }
+    for sent in [json!([]), Value::Null, json!("left"), json!({})] {
+        assert!(rules.check(&sent).is_err(), "{sent}");
+    }
 }
 
 #[test]
@@ -116,10 +146,10 @@ proptest! {
         let rt = f64::from_bits(bits);
         let sent = json!({ "choice": "left", "rt": rt });
         let checked = TrialKind::TwoAlternative.rules().check(&sent);
-        prop_assert_eq!(checked.is_ok(), (0.0..=86_400_000.0).contains(&rt));
-        let answer = checked.map_or_else(|_| json!({ "choice": "left", "rt_ms": rt.to_string() }).to_string(), |c| c.answer);
+        let answer = checked.unwrap().answer;
         let back: Value = serde_json::from_str(&answer).unwrap();
         prop_assert_eq!(&kelir_jcs::canonical(back.clone()).unwrap(), &answer);
+        prop_assert_eq!(back["rt_ms"].is_number(), (0.0..=86_400_000.0).contains(&rt));
         if let Some(read) = back["rt_ms"].as_f64() {
             prop_assert_eq!((read + 0.0).to_bits(), (rt + 0.0).to_bits());
         }

@@ -6,10 +6,10 @@ export default {
   plugin,
   roles: ["left", "right"],
   legend: {
-    title: "Two pictures at once",
+    title: "kind-two-alternative",
     answers: [
-      { keys: ["←"], label: "left image" },
-      { keys: ["→"], label: "right image" },
+      { keys: ["←"], label: "key-left" },
+      { keys: ["→"], label: "key-right" },
     ],
   },
   parameters: (given) => ({ ...common(given), left: given.trial.shown.left?.sha256, right: given.trial.shown.right?.sha256 }),

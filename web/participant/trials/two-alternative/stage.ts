@@ -8,6 +8,7 @@ import { type Choice, firstChoice } from "../shared/choice.ts";
 import { hiddenTime } from "../shared/hidden.ts";
 import { roomWithin, shownAt, toWholePixels } from "../shared/place.ts";
 import { Player } from "../shared/player.ts";
+import { words } from "../../words/index.ts";
 import type { Info } from "./plugin.ts";
 
 export type Side = "left" | "right";
@@ -40,7 +41,7 @@ export class Stage {
     const [left, right] = [surface(pair.left), surface(pair.right)];
     const button = (side: Side, label: string, picture: HTMLElement) =>
       h("button", { type: "button", class: "picture", "aria-label": label, "data-testid": `choice-${side}`, "data-sha256": trial[side] }, picture);
-    this.#buttons = { left: button("left", "Left image", left.element), right: button("right", "Right image", right.element) };
+    this.#buttons = { left: button("left", words("choice-left"), left.element), right: button("right", words("choice-right"), right.element) };
     this.#paint = { left: left.context, right: right.context };
     this.#heading = h("h1", { tabindex: -1 }, trial.question);
     this.#footer = h("p", { class: "position", "aria-live": "polite" });

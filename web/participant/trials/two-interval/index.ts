@@ -7,10 +7,10 @@ export default {
   plugin,
   roles: ["first", "second"],
   legend: {
-    title: "Two pictures, one after the other",
+    title: "kind-two-interval",
     answers: [
-      { keys: ["←", "1"], label: "first" },
-      { keys: ["→", "2"], label: "second" },
+      { keys: ["←", "1"], label: "key-first" },
+      { keys: ["→", "2"], label: "key-second" },
     ],
   },
   parameters: (given) => ({

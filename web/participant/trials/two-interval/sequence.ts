@@ -1,6 +1,6 @@
 /** The steps of a two-interval trial, in whole frames of the measured refresh. Pure: times in, steps out. */
-import { fixed } from "../../../shared/format.ts";
 import { rounded } from "../../clock.ts";
+import { words } from "../../words/index.ts";
 
 export const STEPS = ["fixation", "first", "mask", "second"] as const;
 export type Step = (typeof STEPS)[number];
@@ -33,10 +33,10 @@ export function missed(ms: PerStep, periodMs: number): Step | null {
 
 /** Why a display with this refresh (null: not known) can't show a trial with these `settings`, for the participant; null where it can. */
 export function refusal(settings: unknown, periodMs: number | null): string | null {
-  if (periodMs === null) return "This browser does not tell how often its display redraws, and the pictures of this study are timed.";
+  if (periodMs === null) return words("refresh-unknown");
   const ms = requested(settings);
   const step = missed(ms, periodMs);
-  return step === null ? null : `This study shows something for ${ms[step]} ms, and this display redraws only every ${fixed(periodMs, 1)} ms.`;
+  return step === null ? null : words("refresh-missed", { ms: ms[step], period_ms: periodMs });
 }
 
 /**

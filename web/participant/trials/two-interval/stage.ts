@@ -8,6 +8,7 @@ import { type Choice, firstChoice } from "../shared/choice.ts";
 import { hiddenTime, visible } from "../shared/hidden.ts";
 import { roomWithin, shownAt, toWholePixels } from "../shared/place.ts";
 import { Player } from "../shared/player.ts";
+import { type Plain, words } from "../../words/index.ts";
 import { mask, seedOf } from "./mask.ts";
 import type { Info } from "./plugin.ts";
 import { type PerStep, SequenceClock, type Step } from "./sequence.ts";
@@ -18,7 +19,7 @@ export type Intervals = Record<Interval, Picture>;
 const INTERVALS: readonly Interval[] = ["first", "second"];
 
 /** What is said to those who hear the page. */
-const SPOKEN: Record<Step | "response", string> = { fixation: "", first: "First image", mask: "", second: "Second image", response: "Please choose: first or second" };
+const SPOKEN: Record<Step | "response", Plain | null> = { fixation: null, first: "spoken-first", mask: null, second: "spoken-second", response: "spoken-choose" };
 
 /** A sequence that was shown to its end. */
 export interface Shown {
@@ -55,7 +56,7 @@ export class Stage {
     this.#context = this.#canvas.getContext("2d", { alpha: false }) as CanvasRenderingContext2D;
     const button = (interval: Interval, label: string) =>
       h("button", { type: "button", class: "action", "data-testid": `choice-${interval}`, "data-sha256": trial[interval] }, label);
-    this.#buttons = { first: button("first", "First"), second: button("second", "Second") };
+    this.#buttons = { first: button("first", words("choice-first")), second: button("second", words("choice-second")) };
     this.#heading = h("h1", { tabindex: -1 }, trial.question);
     this.#footer = h("p", { class: "position", "aria-live": "polite" });
     this.#spoken = h("p", { class: "spoken", role: "status" });
@@ -159,7 +160,8 @@ export class Stage {
   /** Puts a step on the screen, or the response's buttons. */
   #paint(step: Step | null): void {
     this.#box.classList.toggle("answering", step === null);
-    this.#spoken.textContent = SPOKEN[step ?? "response"];
+    const spoken = SPOKEN[step ?? "response"];
+    this.#spoken.textContent = spoken === null ? "" : words(spoken);
     const bitmap = step === null ? undefined : this.#bitmaps[step];
     if (bitmap !== undefined) this.#context.drawImage(bitmap, 0, 0);
     else if (step === "fixation") this.#cross();

@@ -167,7 +167,8 @@ async fn judged(store: &Store, study: &StudyDefinition, stored: &mut StoredAnswe
     let answers = stored.answers();
     let step = Instant::now();
     let everybody = answers.participants();
-    let kept: Vec<&Participant> = everybody.iter().copied().filter(|p| screen(study, p).is_empty()).collect();
+    let kept: Vec<&Participant> =
+        everybody.iter().copied().filter(|p| screen(study, p, &[]).is_empty()).collect();
     let screening_s = step.elapsed().as_secs_f64();
     let step = Instant::now();
     let blocks = summarise(study, &kept);
