@@ -8,6 +8,9 @@ import { words } from "./words/index.ts";
 /** A request that brings nothing for so long is given up and asked again, from where it was, ms. */
 export const STALL_MS = 10_000;
 
+const STIMULUS = "application/vnd.kelir.stimulus";
+const PROBLEM = "application/problem+json";
+
 export interface Watcher {
   /** `true` when the line keeps us waiting, `false` when it is back. */
   onWaiting(waiting: boolean): void;
@@ -65,6 +68,9 @@ async function more(url: string, part: Part, { watcher, restart, stallMs, fresh 
     const resume = part.length > 0 && part.etag !== null ? { range: `bytes=${part.length}-`, "if-range": part.etag } : null;
     const response = await fetch(url, { signal: abort.signal, cache: fresh ? "reload" : "default", ...(resume === null ? {} : { headers: resume }) });
     alive();
+    const type = response.headers.get("content-type") ?? "";
+    // What a proxy or a sign-in page says is not the server's word: it may be otherwise later.
+    if (!type.startsWith(response.ok ? STIMULUS : PROBLEM) && response.status !== 416) throw new Error("another server's answer");
     if (!response.ok) return response.status;
     if (response.status !== 206) restart();
     part.etag = response.headers.get("etag");

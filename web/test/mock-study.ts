@@ -34,8 +34,8 @@ export const study: Omit<Study, "trial_kinds"> = {
 export type Planned = Omit<Trial, "answered">;
 
 export interface Material {
-  /** By hash. */
-  bytes: Map<string, { type: string; data: Buffer }>;
+  /** By hash, with the pictures (PNG) that the bytes hold. */
+  bytes: Map<string, { data: Buffer; pictures: Buffer[] }>;
   trials: Planned[];
 }
 
@@ -49,25 +49,27 @@ function picture(look: Look): Buffer {
 }
 
 class Maker implements Material {
-  readonly bytes = new Map<string, { type: string; data: Buffer }>();
+  readonly bytes: Material["bytes"] = new Map();
   readonly trials: Planned[] = [];
 
   still(look: Look) {
-    return this.#add("image/png", picture(look));
+    return this.#add([picture(look)], 0);
   }
 
   animation(look: Look, frames: number, fps: number) {
-    const list = Array.from({ length: frames }, (_, i) => this.still({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) }).sha256);
-    return this.#add("application/vnd.kelir.animation+json", Buffer.from(JSON.stringify({ fps, loop: true, width: 592, height: 333, frames: list })));
+    return this.#add(Array.from({ length: frames }, (_, i) => picture({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) })), fps);
   }
 
   trial(trial: Omit<Planned, "trial_index" | "width" | "height">): void {
     this.trials.push({ trial_index: this.trials.length, ...trial, width: 592, height: 333 });
   }
 
-  #add(type: string, data: Buffer) {
+  /** As the server packs stimuli, but for the pictures' type. */
+  #add(pictures: Buffer[], fps: number) {
+    const head = { format: 2, width: 592, height: 333, fps, loop: fps > 0, frames: [...pictures.keys()], picture_type: "image/png", picture_bytes: pictures.map((png) => png.length) };
+    const data = Buffer.concat([Buffer.from(`${JSON.stringify(head)}\n`), ...pictures, Buffer.alloc(100)]);
     const hash = sha256(data);
-    this.bytes.set(hash, { type, data });
+    this.bytes.set(hash, { data, pictures });
     return { sha256: hash, url: `/stimuli/${hash}` };
   }
 }

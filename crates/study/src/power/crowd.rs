@@ -106,7 +106,12 @@ impl<'a> Crowd<'a> {
             let chose_first =
                 chose_target == trial.is_first(&study.blocks[trial.block_index as usize].target);
             if let Some(observation) = trial.trial.rules().chose(&trial.shown, chose_first, rt_ms) {
-                answers.push(Row { session_id, trial_index: trial.trial_index, observation });
+                answers.push(Row {
+                    session_id,
+                    trial_index: trial.trial_index,
+                    observation,
+                    received_us: None,
+                });
             }
             chose.push(chose_target);
         }
