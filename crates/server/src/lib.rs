@@ -13,6 +13,7 @@ mod headers;
 mod library;
 mod limiter;
 mod making;
+mod participants;
 mod password;
 mod picture;
 mod presenting;
@@ -21,17 +22,22 @@ pub mod results;
 mod routes;
 mod selection;
 mod server;
+mod table;
 mod viewer;
 mod web;
+mod workbook;
 
 pub use error::{StartError, StudyFileError};
-pub use export::{codebook_csv, responses_csv};
+pub use export::{codebook_csv, responses_csv, responses_table, spreadsheet};
 pub use library::{Library, check_study};
 pub use making::{Made, Maker, Making, Task};
+pub use participants::participants_table;
 pub use render::RenderMaker;
 pub use routes::openapi_json;
 pub use selection::{Include, Selection, SelectionError, VersionRef, With};
 pub use server::{Handle, Server, ServerConfig};
+pub use table::{Table, codebook_of};
+pub use workbook::workbook;
 
 /// Re-exported for callers that read a data folder without a server.
 pub use kelir_store::{Store, StoreError};

@@ -1,15 +1,14 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
 use crate::api::StudyVersion;
-use crate::export::write_row;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
+use crate::table::write_row;
 use kelir_report::{
     Chain, DifferentStimulus, Fault, Participants, PooledVersion, Standing, Stimulus, StudyReport,
 };
 use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
 use kelir_store::{Store, StoreError, StoredAnswers, StudyStimulus};
-use kelir_study::StudyDefinition;
 use kelir_study::analysis::{BlockSummary, conditions_scale, summarise};
 use kelir_study::answers::{Answers, blocks, compares};
 use kelir_study::report::Report;

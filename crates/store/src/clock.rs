@@ -25,8 +25,8 @@ fn shifted(
     format!("{:.3}", moved.unwrap_or(Timestamp::UNIX_EPOCH))
 }
 
-/// Such a time in µs since 1970; `None` where the text is none.
-pub(crate) fn micros(text: &str) -> Option<i64> {
+/// A time as the database holds it in µs since 1970; `None` where the text is none.
+pub fn micros(text: &str) -> Option<i64> {
     text.parse::<Timestamp>().ok().map(Timestamp::as_microsecond)
 }
 

@@ -25,6 +25,7 @@ mod versions;
 
 pub use answers::{AnswerRow, Appended, NewAnswer, NextTrials, Progress, ShownStimulus, StoredAnswer};
 pub use chain::{ChainReport, Fault};
+pub use clock::micros;
 pub use error::StoreError;
 pub use files::sha256_hex;
 pub use first_chain::GENESIS;

@@ -24,6 +24,12 @@ worded! {
     }
 }
 
+impl Default for SessionStatus {
+    fn default() -> SessionStatus {
+        SessionStatus::InProgress
+    }
+}
+
 /// What a row says of its session.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct SessionColumns {

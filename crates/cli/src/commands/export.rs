@@ -5,9 +5,14 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use kelir_render::file::write_atomic;
-use kelir_server::{codebook_csv, responses_csv, results::pairs_csv};
+use kelir_server::{
+    Selection, Store, codebook_csv, codebook_of, participants_table, responses_csv, results::pairs_csv,
+    spreadsheet,
+};
+use kelir_study::columns::participants_codebook;
 
 use super::stored::{Stored, block_on};
+use crate::bad_input;
 use crate::output::print;
 
 /// Arguments of `kelir export`.
@@ -17,10 +22,10 @@ pub struct Args {
     study: String,
     #[command(flatten)]
     stored: Stored,
-    /// Which table.
-    #[arg(long, value_enum, default_value = "responses")]
-    table: Table,
-    /// File to write; absent: standard output.
+    /// Which table; absent: the responses.
+    #[arg(long, value_enum)]
+    table: Option<Table>,
+    /// File to write; absent: standard output. FILE.xlsx is a spreadsheet with every table.
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
@@ -30,28 +35,56 @@ pub struct Args {
 enum Table {
     /// One tidy row a trial, everything that is stored.
     Responses,
+    /// One row a session: who came, when, with what, how far, whether judged.
+    Participants,
     /// Choices as pwcmp reads them, without the excluded.
     Pairs,
     /// What each column of the responses is.
     Codebook,
+    /// What each column of the participants is.
+    ParticipantsCodebook,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let text = block_on(async {
-        if let Table::Codebook = args.table {
-            return Ok(codebook_csv());
+    let is_spreadsheet = args
+        .output
+        .as_ref()
+        .and_then(|file| file.extension())
+        .is_some_and(|e| e.eq_ignore_ascii_case("xlsx"));
+    if let (true, Some(_)) = (is_spreadsheet, args.table) {
+        return Err(bad_input(
+            "--table: a spreadsheet holds every table; give --output FILE.csv for one of them",
+        ));
+    }
+    let content = block_on(async {
+        if let Some(Table::Codebook) = args.table {
+            return Ok(codebook_csv().into_bytes());
         }
         let (store, selection) = args.stored.open(&args.study).await?;
-        let text = match args.table {
-            Table::Pairs => pairs_csv(&store, &selection).await,
-            _ => responses_csv(&store, &selection).await,
+        let content = if is_spreadsheet {
+            spreadsheet(&store, &selection).await.map_err(anyhow::Error::from)
+        } else {
+            csv(&store, &selection, args.table.unwrap_or(Table::Responses)).await
         };
         store.close().await;
-        Ok(text?)
+        content
     })?;
     match &args.output {
-        None => print(&text),
-        Some(file) => write_atomic(file, text.as_bytes()).with_context(|| file.display().to_string()),
+        None => print(&String::from_utf8_lossy(&content)),
+        Some(file) => write_atomic(file, &content).with_context(|| file.display().to_string()),
     }
+}
+
+async fn csv(store: &Store, selection: &Selection, table: Table) -> Result<Vec<u8>> {
+    let text = match table {
+        Table::Responses => responses_csv(store, selection).await?,
+        Table::Participants => participants_table(store, selection).await?.csv(),
+        Table::Pairs => pairs_csv(store, selection).await?,
+        Table::Codebook => codebook_csv(),
+        Table::ParticipantsCodebook => {
+            codebook_of(&participants_codebook(&selection.study.session.params)).csv()
+        }
+    };
+    Ok(text.into_bytes())
 }

@@ -3,15 +3,18 @@
 use super::{Answered, Fresh};
 use crate::api::{Codebook, Pooling, Problem, refusals, version_ref};
 use crate::app::App;
-use crate::export::{codebook_csv, responses_csv};
+use crate::export::{codebook_csv, responses_csv, spreadsheet};
 use crate::extract::{Parameters, Query, Researcher};
+use crate::participants::participants_table;
 use crate::results::{StudyResults, pairs_csv, report_of, results_of};
 use crate::selection::Selection;
+use crate::table::codebook_of;
+use axum::body::Body;
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use kelir_report::{Document, Figures, StudyReport, html, markdown};
-use kelir_study::columns::codebook;
+use kelir_study::columns::{codebook, participants_codebook};
 use serde::Deserialize;
 use std::sync::Arc;
 use utoipa::IntoParams;
@@ -26,6 +29,9 @@ pub(crate) struct VersionPath {
 }
 
 refusals!(Chosen: Unauthorized, InvalidParameter, AmbiguousVersion, NotFound);
+
+/// The media type of a spreadsheet.
+const XLSX: &str = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet";
 
 type File = Result<Response, Box<Problem>>;
 
@@ -133,6 +139,58 @@ pub(crate) async fn get_responses_csv(
     Ok(csv(&format!("{}-responses.csv", path.study), table))
 }
 
+/// One row a session: who came, when, with what, how far, and whether their answers are judged. What each column is, is in
+/// `participants_codebook.csv`.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/participants.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_participants_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let selection = chosen(&app, &path, &pooling).await?;
+    let table = participants_table(&app.store, &selection).await?;
+    Ok(csv(&format!("{}-participants.csv", path.study), table.csv()))
+}
+
+/// What each column of `participants.csv` is, as a table.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/participants_codebook.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_participants_codebook_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let selection = chosen(&app, &path, &pooling).await?;
+    let table = codebook_of(&participants_codebook(&selection.study.session.params));
+    Ok(csv(&format!("{}-participants-codebook.csv", path.study), table.csv()))
+}
+
+/// Every table in one spreadsheet, with a codebook: numbers are numbers whatever language the reader's spreadsheet speaks.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/export.xlsx", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = Vec<u8>, content_type = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"), Chosen)
+)]
+pub(crate) async fn get_export_xlsx(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let selection = chosen(&app, &path, &pooling).await?;
+    let file = spreadsheet(&app.store, &selection).await.map_err(Problem::internal)?;
+    Ok(download(XLSX, &format!("{}.xlsx", path.study), file))
+}
+
 /// The choices as pwcmp reads them, one row a trial.
 #[utoipa::path(
     get, path = "/api/v1/studies/{study}/versions/{version}/pairs.csv", tag = "results", security(("researcher" = [])),
@@ -187,11 +245,11 @@ fn csv(name: &str, text: String) -> Response {
 }
 
 /// A file to keep, which no browser opens in the console's own origin.
-fn download(media_type: &str, name: &str, text: String) -> Response {
+fn download(media_type: &str, name: &str, content: impl Into<Body>) -> Response {
     let headers = [
         (header::CONTENT_TYPE, media_type.to_owned()),
         (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\"")),
         (header::CACHE_CONTROL, "no-store".to_owned()),
     ];
-    (headers, text).into_response()
+    (headers, content.into()).into_response()
 }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
 /// What a row says of a session.
-#[derive(Clone, Debug, Serialize, ToSchema)]
+#[derive(Clone, Debug, Default, Serialize, ToSchema)]
 pub struct ParticipantColumns {
     /// Participant: the id that the link named, as it was sent; else the session's id.
     pub subject_id: String,

@@ -1,0 +1,84 @@
+//! Tables of a study's data: columns that say what they are, and cells as text. CSV and spreadsheets are written from them.
+
+use kelir_study::schema::Column;
+
+/// A table with what its columns are.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Its name, as of a file or a sheet.
+    pub name: &'static str,
+    /// Its columns, in order.
+    pub columns: Vec<Column>,
+    /// The cells of each row, one a column; empty: nothing.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// The table as CSV (RFC 4180), its header first.
+    pub fn csv(&self) -> String {
+        let mut out = String::new();
+        write_row(&mut out, self.columns.iter().map(|column| column.name.clone()));
+        self.rows.iter().for_each(|row| write_row(&mut out, row.iter().cloned()));
+        out
+    }
+}
+
+/// What the columns of tables are, as a table: `column, type, unit, meaning, values`.
+pub fn codebook_of(columns: &[Column]) -> Table {
+    let text = |name: &str, meaning: &str| Column {
+        name: name.to_owned(),
+        kind: "text".to_owned(),
+        unit: String::new(),
+        meaning: meaning.to_owned(),
+        values: Vec::new(),
+    };
+    let row = |column: &Column| {
+        let values: Vec<String> =
+            column.values.iter().map(|v| format!("{}: {}", v.value, v.meaning)).collect();
+        let Column { name, kind, unit, meaning, .. } = column.clone();
+        vec![name, kind, unit, meaning, values.join("; ")]
+    };
+    Table {
+        name: "codebook",
+        columns: vec![
+            text("column", "Column of the table."),
+            text("type", "What its cells are."),
+            text("unit", "Unit of its numbers."),
+            text("meaning", "What it says."),
+            text("values", "The values that it can have, with their meanings."),
+        ],
+        rows: columns.iter().map(row).collect(),
+    }
+}
+
+/// RFC 4180: quoted where need be, CRLF at the end. A cell that a spreadsheet would take for a formula gets an apostrophe before it.
+pub(crate) fn write_row(out: &mut String, cells: impl IntoIterator<Item = String>) {
+    for (i, mut cell) in cells.into_iter().enumerate() {
+        if i > 0 {
+            out.push(',');
+        }
+        if cell.starts_with(['=', '+', '@', '\t', '\r'])
+            || (cell.starts_with('-') && cell.parse::<f64>().is_err())
+        {
+            cell.insert(0, '\'');
+        }
+        if cell.contains([',', '"', '\n', '\r']) {
+            out.push_str(&format!("\"{}\"", cell.replace('"', "\"\"")));
+        } else {
+            out.push_str(&cell);
+        }
+    }
+    out.push_str("\r\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_quoted_and_no_formula_survives() {
+        let mut out = String::new();
+        write_row(&mut out, ["a", "b,c", "d\"e", "=1+1", "-3.5", "-cmd"].map(str::to_owned));
+        assert_eq!(out, "a,\"b,c\",\"d\"\"e\",'=1+1,-3.5,'-cmd\r\n");
+    }
+}
