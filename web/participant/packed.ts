@@ -1,4 +1,4 @@
-/** What a stimulus arrives as: a line of JSON, then its pictures one after another, each but the first drawn over the one before. */
+/** What a stimulus arrives as: a line of JSON, then its pictures one after another, each but the first a step from the one before. */
 import { words } from "./words/index.ts";
 
 /** A stimulus's first line. */
@@ -50,21 +50,33 @@ export async function still(bytes: Uint8Array<ArrayBuffer>): Promise<HTMLImageEl
 /** How many pictures of an animation are decoded while another is drawn. */
 const AHEAD = 4;
 
-/** An animation's frames, each as a bitmap; equal frames share theirs. Nothing is read back from the canvas: browsers that guard against fingerprints falsify that. */
+/**
+ * An animation's frames, each as a bitmap; equal frames share theirs. A step's upper half is what is brighter, its lower half what is darker.
+ * The canvas adds and takes away by itself: what is read back from one is falsified by browsers that guard against fingerprints.
+ */
 export async function animation(bytes: Uint8Array<ArrayBuffer>): Promise<{ head: Head; frames: ImageBitmap[] }> {
   const { head, pictures } = unpack(bytes);
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [head.width, head.height];
   const context = canvas.getContext("2d", { alpha: false });
   if (context === null) throw new Unusable(words("picture-damaged"));
+  context.imageSmoothingEnabled = false;
   const decoding = pictures.slice(0, AHEAD).map((picture) => createImageBitmap(picture));
   const drawn: ImageBitmap[] = [];
   for (const index of pictures.keys()) {
     const next = pictures[index + AHEAD];
     if (next !== undefined) decoding.push(createImageBitmap(next));
-    const layer = (await decoding[index]) as ImageBitmap;
-    context.drawImage(layer, 0, 0);
-    layer.close();
+    const picture = (await decoding[index]) as ImageBitmap;
+    const draw = (how: GlobalCompositeOperation, top: number) => {
+      context.globalCompositeOperation = how;
+      context.drawImage(picture, 0, top, head.width, head.height, 0, 0, head.width, head.height);
+    };
+    if (index === 0) draw("copy", 0);
+    else {
+      draw("lighter", 0);
+      draw("difference", head.height);
+    }
+    picture.close();
     drawn.push(await createImageBitmap(canvas));
   }
   return { head, frames: head.frames.map((index) => drawn[index] as ImageBitmap) };

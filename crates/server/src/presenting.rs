@@ -103,12 +103,13 @@ impl Presenter {
         Ok(vec![common, Bytes::copy_from_slice(&presented.tail)])
     }
 
-    /// The bytes of a stored file, from memory where they are there.
+    /// The bytes of a stored file, from memory where they are there, else held to their hash.
     pub(crate) async fn stored(&self, store: &Store, sha256: &str) -> Result<Option<Bytes>, Box<Problem>> {
         if let Some(bytes) = self.cached(sha256) {
             return Ok(Some(bytes));
         }
-        let Some(bytes) = store.file(sha256).await?.map(Bytes::from) else { return Ok(None) };
+        let Some((_, bytes)) = store.stimulus(sha256).await? else { return Ok(None) };
+        let bytes = Bytes::from(bytes);
         self.keep(sha256.to_owned(), bytes.clone());
         Ok(Some(bytes))
     }

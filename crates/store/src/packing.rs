@@ -1,15 +1,16 @@
 //! A stimulus packed for its way to a browser: one file, of one kind for whatever is shown, with the pixels of what is stored.
 //!
-//! It is a line of JSON ([`Head`]) and then its pictures, lossless WebP, one after another. A picture after the first holds what differs from
-//! the one before it, over which it is drawn, and is transparent elsewhere: a page needs to read no pixels back, which browsers that guard
-//! against fingerprints falsify.
+//! It is a line of JSON ([`Head`]) and then its pictures, lossless WebP, one after another. A picture after the first is a step from the one
+//! before it and twice as high: above, what is brighter, which is added; below, what is darker, which is taken away. A canvas can do both by
+//! itself ("lighter", "difference"), so that a page needs to read no pixels back: browsers that guard against fingerprints falsify those.
 
 use crate::pixels::{self, Manifest, Pixels, PixelsHash};
 use crate::stimuli::ANIMATION;
 use image::codecs::webp::WebPEncoder;
-use image::{ExtendedColorType, ImageEncoder, RgbaImage};
+use image::{ExtendedColorType, ImageEncoder, Rgba, RgbaImage};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
+use webp::{Encoder, PixelLayout, WebPConfig};
 
 /// Media type of a packed stimulus.
 pub const PACKED: &str = "application/vnd.kelir.stimulus";
@@ -67,7 +68,7 @@ pub(crate) fn pack(
         let image = manifest.picture(name, frame)?.into_rgba8();
         let step = match &last {
             None => webp(&image, None)?,
-            Some(last) => webp(&changed(last, &image)?, None)?,
+            Some(last) => webp(&step(last, &image)?, None)?,
         };
         pictures.push(step);
         last = Some(image);
@@ -76,39 +77,65 @@ pub(crate) fn pack(
     joined(size, (manifest.fps, manifest.repeat), frames, pictures)
 }
 
-/// `after` where it differs from `before`, transparent elsewhere.
-fn changed(before: &RgbaImage, after: &RgbaImage) -> Result<RgbaImage, String> {
-    if before.dimensions() != after.dimensions() {
-        return Err(format!("has frames of different sizes: {} × {}", after.width(), after.height()));
+/// From `before` to `after`: what is brighter above what is darker.
+fn step(before: &RgbaImage, after: &RgbaImage) -> Result<RgbaImage, String> {
+    let (width, height) = after.dimensions();
+    if before.dimensions() != (width, height) {
+        return Err(format!("has frames of different sizes: {width} × {height}"));
     }
-    let mut step = RgbaImage::new(after.width(), after.height());
-    for (out, (a, b)) in step.pixels_mut().zip(before.pixels().zip(after.pixels())) {
-        if b.0[3] != 255 {
-            return Err("has frames that are not opaque".to_owned());
-        }
-        if a != b {
-            *out = *b;
-        }
+    let opaque = |image: &RgbaImage| image.pixels().all(|pixel| pixel.0[3] == 255);
+    if !opaque(before) || !opaque(after) {
+        return Err("has frames that are not opaque".to_owned());
     }
-    Ok(step)
+    let (mut brighter, mut darker) = (Vec::new(), Vec::new());
+    for (a, b) in before.pixels().zip(after.pixels()) {
+        let [added, taken] = [[b, a], [a, b]].map(|[more, less]| channels(|c| more.0[c].saturating_sub(less.0[c])));
+        brighter.extend(added);
+        darker.extend(taken);
+    }
+    brighter.extend(darker);
+    RgbaImage::from_raw(width, 2 * height, brighter).ok_or_else(|| "is too large".to_owned())
+}
+
+/// An opaque pixel.
+fn channels(of: impl Fn(usize) -> u8) -> [u8; 4] {
+    [of(0), of(1), of(2), 255]
+}
+
+/// What follows `before` by a step.
+fn stepped(before: &RgbaImage, step: &RgbaImage) -> Result<RgbaImage, String> {
+    let (width, height) = before.dimensions();
+    if step.dimensions() != (width, 2 * height) {
+        return Err("has a step of another size".to_owned());
+    }
+    Ok(RgbaImage::from_fn(width, height, |x, y| {
+        let [now, added, taken] = [before.get_pixel(x, y), step.get_pixel(x, y), step.get_pixel(x, y + height)];
+        Rgba(channels(|c| now.0[c].saturating_add(added.0[c]).abs_diff(taken.0[c])))
+    }))
 }
 
 /// Lossless WebP, without an alpha channel where all is opaque.
 fn webp(image: &RgbaImage, profile: Option<Vec<u8>>) -> Result<Vec<u8>, String> {
     let (width, height) = image.dimensions();
-    let mut bytes = Vec::new();
-    let mut encoder = WebPEncoder::new_lossless(&mut bytes);
-    if let Some(profile) = profile {
-        encoder.set_icc_profile(profile).map_err(|error| error.to_string())?;
-    }
-    let written = if image.pixels().all(|pixel| pixel.0[3] == 255) {
-        let rgb: Vec<u8> = image.pixels().flat_map(|pixel| pixel.0[..3].to_vec()).collect();
-        encoder.encode(&rgb, width, height, ExtendedColorType::Rgb8)
+    let opaque = image.pixels().all(|pixel| pixel.0[3] == 255);
+    let (pixels, layout, colour) = if opaque {
+        let rgb = image.pixels().flat_map(|pixel| pixel.0.into_iter().take(3)).collect();
+        (rgb, PixelLayout::Rgb, ExtendedColorType::Rgb8)
     } else {
-        encoder.encode(image.as_raw(), width, height, ExtendedColorType::Rgba8)
+        (image.as_raw().clone(), PixelLayout::Rgba, ExtendedColorType::Rgba8)
     };
-    written.map_err(|error| format!("cannot be packed: {error}"))?;
-    Ok(bytes)
+    if let Some(profile) = profile {
+        let mut bytes = Vec::new();
+        let mut encoder = WebPEncoder::new_lossless(&mut bytes);
+        encoder.set_icc_profile(profile).map_err(|error| error.to_string())?;
+        let written = encoder.encode(&pixels, width, height, colour);
+        return written.map(|()| bytes).map_err(|error| format!("cannot be packed: {error}"));
+    }
+    let mut config = WebPConfig::new().map_err(|()| "cannot be packed".to_owned())?;
+    // More effort takes ten times as long and saves nothing here.
+    (config.lossless, config.exact, config.method, config.quality) = (1, 1, 2, 50.0);
+    let packed = Encoder::new(&pixels, layout, width, height).encode_advanced(&config);
+    packed.map(|bytes| bytes.to_vec()).map_err(|error| format!("cannot be packed: {error:?}"))
 }
 
 fn joined(
@@ -141,15 +168,11 @@ pub(crate) fn unpacked(bytes: &[u8]) -> Result<Pixels, String> {
     for length in &head.picture_bytes {
         let (picture, after) = rest.split_at_checked(*length).ok_or("is cut short")?;
         rest = after;
-        let mut image = pixels::decode(picture)?.0.into_rgba8();
-        if let Some(before) = shown.last() {
-            for (pixel, before) in image.pixels_mut().zip(before.pixels()) {
-                if pixel.0[3] == 0 {
-                    *pixel = *before;
-                }
-            }
-        }
-        shown.push(image);
+        let image = pixels::decode(picture)?.0.into_rgba8();
+        shown.push(match shown.last() {
+            Some(before) => stepped(before, &image)?,
+            None => image,
+        });
     }
     let size = [head.width, head.height];
     let mut hash = match head.fps {
@@ -161,3 +184,6 @@ pub(crate) fn unpacked(bytes: &[u8]) -> Result<Pixels, String> {
     }
     Ok(hash.finish())
 }
+
+#[cfg(test)]
+mod tests;

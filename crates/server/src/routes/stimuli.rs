@@ -40,8 +40,8 @@ refusals!(NoStimulus: NotFound);
 /// The bytes of a stimulus as a session gets them; they never change. The address is the permission.
 ///
 /// They are a line of JSON and then pictures, one after another. The line says `format` (2), `width`, `height`, `fps` (0 for a still), `loop`,
-/// `frames` (which picture each frame shows), `picture_type` and `picture_bytes` (the length of each picture). A picture after the first is drawn
-/// over the one before it. What follows the last picture means nothing.
+/// `frames` (which picture each frame shows), `picture_type` and `picture_bytes` (the length of each picture). A picture after the first is
+/// a step from the one before it and twice as high: its upper half is added, its lower half then taken away. What follows the last picture means nothing.
 #[utoipa::path(
     get, path = "/api/v1/sessions/{session}/stimuli/{address}", tag = "participants", params(SessionStimulusPath),
     responses(

@@ -6,6 +6,7 @@ mod client;
 mod making;
 mod openapi;
 mod placeholder;
+mod presenting;
 mod research;
 mod taking_part;
 mod versions;
