@@ -43,7 +43,7 @@ async function take({ name, study, viewport, dpr = 1, input, choices, targets, r
   let said = null;
   for (;;) {
     if (trials.length === shoot && trials.length > 0) await steps(page, shot);
-    const hook = page.locator(`[data-testid="consent-agree"]:visible, [data-testid="start"]:visible, [data-testid="completion-code"]:visible, .trial:not([data-done]) [data-testid^="choice-"]:visible`).first();
+    const hook = page.locator(`:is([data-testid="consent-agree"], [data-testid="start"], [data-testid="completion-code"], .trial:not([data-done]) [data-testid^="choice-"]):visible:not([aria-disabled])`).first();
     await hook.waitFor({ timeout: 60_000 });
     const id = await hook.getAttribute("data-testid");
     if (id === "completion-code") {

@@ -80,7 +80,8 @@ const sides = (page) => Promise.all(["choice-left", "choice-right"].map((id) => 
 /** The test hook of the screen that is shown now. */
 async function current(page) {
   const hooks = ["consent-agree", "start", "choice-left", "completion-code"];
-  const shown = page.locator(hooks.map((hook) => `[data-testid="${hook}"]:visible`).join(","));
+  // What is pressed before it counts is ignored.
+  const shown = page.locator(hooks.map((hook) => `[data-testid="${hook}"]:visible:not([aria-disabled])`).join(","));
   await shown.first().waitFor({ timeout: 60_000 });
   return shown.first().getAttribute("data-testid");
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod adaptive;
+mod check;
 mod cli;
 mod doors;
 mod film;
@@ -9,4 +10,5 @@ mod invariants;
 mod kinds;
 mod report;
 mod survey;
+mod trying;
 mod versions;

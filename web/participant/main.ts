@@ -8,6 +8,7 @@ import { Session } from "./session.ts";
 import { Unusable } from "./stimuli.ts";
 import { openStore, sessionKey } from "./storage.ts";
 import { openTabs } from "./tabs.ts";
+import { showRibbon, visitOf } from "./trying.ts";
 import { Visit } from "./visit.ts";
 import { settle, Tab } from "./whose.ts";
 import { speak, spoken, words } from "./words/index.ts";
@@ -17,13 +18,15 @@ document.body.append(display, notice);
 speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
-/** What the link says of the participant, within what the server takes. */
+/** What the link says of the participant, within what the server takes; an id that is too long stays so, and is refused aloud. */
 const params = Object.fromEntries(
-  [...new URLSearchParams(location.search)].filter(([name, value]) => new Blob([name]).size <= 64 && new Blob([value]).size <= 512).slice(0, 64),
+  [...new URLSearchParams(location.search)].filter(([name]) => [...name].length <= 64).map(([name, value]) => [name, [...value].slice(0, 1024).join("")]).slice(0, 64),
 );
 
 async function start(): Promise<void> {
-  const key = sessionKey(studyId, params);
+  const visit = await visitOf(studyId);
+  const kept = visit !== "preview";
+  const key = kept ? sessionKey(studyId, params) : `kelir:preview:${crypto.getRandomValues(new Uint32Array(2)).join("-")}`;
   let session: Session | null = null;
   const tabs = openTabs(key, () => {
     session?.stop();
@@ -38,9 +41,10 @@ async function start(): Promise<void> {
     return lastPage(words("no-study-title"), [words("no-study")]);
   }
   dress(study);
-  const store = openStore(() => localStorage);
+  showRibbon(visit);
+  const store = openStore(() => (kept ? localStorage : memoryOnly()));
   session = new Session(study.id, key, params, store);
-  const tab = new Tab(key, openStore(() => sessionStorage));
+  const tab = new Tab(key, openStore(() => (kept ? sessionStorage : memoryOnly())));
   await settle(session, tab, study.per_visit, elsewhere);
   tabs.claim();
   session.resume();
@@ -51,6 +55,11 @@ async function start(): Promise<void> {
   dress(session.state?.study ?? study);
   session.rescue();
   await new Visit(study, session, tab).run();
+}
+
+/** In place of a storage: a preview leaves nothing behind. */
+function memoryOnly(): Storage {
+  throw new Error("a preview keeps nothing");
 }
 
 /** Gives the page its title, the grey that surrounds everything, and an ink that can be read on it. */
@@ -65,6 +74,7 @@ function dress({ title, surround }: api.Study): void {
 function stop(error: unknown): void {
   console.error(error);
   const again = action(words("reload"), () => location.reload());
+  if (error instanceof Refused && error.code === "link_refused") return lastPage(words("link-title"), [error.message]);
   if (error instanceof Ended) return lastPage(error.heading, error.texts, again);
   const known = error instanceof Refused || error instanceof Unusable ? error.message : words("stopped");
   lastPage(words("stopped-title"), [`${known} ${words("kept")}`], again);

@@ -2,8 +2,9 @@
 import { h, paragraphs } from "../shared/dom.ts";
 import type { Completion, Study } from "./api.ts";
 import { copied } from "./copy.ts";
+import { legendsContent } from "./legend.ts";
 import { showPage } from "./text-page.ts";
-import type { Legend } from "./trials/module.ts";
+import type { TrialModule } from "./trials/module.ts";
 import { words } from "./words/index.ts";
 
 /** Where everything but `notice` is shown. */
@@ -45,18 +46,9 @@ export function consentContent({ texts, estimated_minutes }: Study): Node[] {
   ];
 }
 
-/** The study's instructions, and the keys of each of its kinds of trial, shown once. */
-export function instructionsContent({ texts }: Study, legends: readonly Legend[]): Node[] {
-  const several = legends.length > 1;
-  return [...paragraphs(texts.instructions), ...legends.flatMap((legend) => [...(several ? [h("h2", { class: "kind" }, words(legend.title))] : []), keys(legend)])];
-}
-
-function keys({ answers }: Legend): HTMLElement {
-  const side = ({ keys, label }: Legend["answers"][number]) => {
-    const names = keys.flatMap((key, i) => [...(i > 0 ? [` ${words("key-or")} `] : []), h("kbd", {}, key)]);
-    return h("div", { class: "side" }, h("span", { class: "sketch", "aria-hidden": "true" }), h("span", {}, ...names, ` ${words(label)}`));
-  };
-  return h("div", { class: "keys" }, ...answers.map(side));
+/** The study's instructions, and how to answer each of its kinds of trial. */
+export function instructionsContent(study: Study, legends: readonly TrialModule["legend"][]): Node[] {
+  return [...paragraphs(study.texts.instructions), legendsContent(study, legends)];
 }
 
 /** The last page of a visit that came to its end. */

@@ -11,7 +11,7 @@ import type { Session } from "./session.ts";
 import { openLoader, type Pictures, type Progress, Unusable } from "./stimuli.ts";
 import TextPage, { showPage } from "./text-page.ts";
 import { loadKind, UnknownKind } from "./trials/kinds.ts";
-import type { TrialModule } from "./trials/module.ts";
+import { rulesOf, type TrialModule } from "./trials/module.ts";
 import { offerNext, type Tab } from "./whose.ts";
 import { words } from "./words/index.ts";
 
@@ -80,6 +80,7 @@ export class Visit {
       content: () => consentContent(this.#study),
       button: words("consent-agree"),
       testid: "consent-agree",
+      rules: rulesOf(this.#study),
       action: async () => {
         await this.#session.consent();
         this.#tab.has(this.#session.id);
@@ -98,6 +99,7 @@ export class Visit {
       content: () => instructionsContent(this.#study, kinds.map((kind) => kind.legend)),
       button: words("instructions-start"),
       testid: "start",
+      rules: rulesOf(this.#study),
       on_load: () => {
         noTabStop();
         void this.#measure();

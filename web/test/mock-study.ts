@@ -21,7 +21,7 @@ export const study: Omit<Study, "trial_kinds"> = {
       "We store your choices, how long each took, and the size and refresh rate of your display. We don't store your name or address.",
       "The answers are analysed together with those of other people and may be published without anything that identifies you.",
     ],
-    instructions: ["Two pictures appear beside each other, or below each other on a narrow screen.", "Choose one by clicking or touching it, or with the arrow keys. Take the time you need, but trust your first impression."],
+    instructions: ["Two pictures appear beside each other, or below each other on a narrow screen.", "Choose one. Take the time you need, but trust your first impression."],
     debriefing: [
       "All pictures were computed. In some pairs one was drawn by a fast method and the other by a slow, accurate one; in others one was passed through a simulated camera, to look like a photograph.",
       "We want to know whether people can tell them apart.",

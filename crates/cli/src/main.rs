@@ -24,6 +24,8 @@ enum Command {
     Render(commands::render::Args),
     /// Draw the frames of a scene's timeline.
     Animate(commands::animate::Args),
+    /// Write a study of your own to begin with: a folder that `kelir serve --data` serves.
+    New(commands::new::Args),
     /// Look at scene files.
     #[command(subcommand)]
     Scene(commands::scene::Command),
@@ -73,6 +75,7 @@ fn main() -> ExitCode {
         Command::Serve(args) => commands::serve::run(args),
         Command::Render(args) => commands::render::run(args),
         Command::Animate(args) => commands::animate::run(args),
+        Command::New(args) => commands::new::run(&args),
         Command::Scene(command) => commands::scene::run(command),
         Command::Study(command) => commands::study::run(command),
         Command::Bench(command) => commands::bench::run(command),

@@ -3,8 +3,10 @@
 use crate::api::{Problem, ProblemCode};
 use crate::library::Library;
 use crate::limiter::Limiter;
+use crate::links::Links;
 use crate::making::{Maker, Making, StimulusMap};
 use crate::presenting::Presenter;
+use crate::previews::Previews;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
 use kelir_store::{Session, Store, StoreError, StoredAnswers};
 use kelir_study::StudyDefinition;
@@ -26,6 +28,8 @@ pub(crate) struct App {
     /// A report resamples participants thousands of times.
     pub(crate) reporting: Semaphore,
     pub(crate) secure_cookies: bool,
+    pub(crate) links: Links,
+    pub(crate) previews: Previews,
     /// What sessions that began with other files or versions go on with, by study, file and version.
     begun: RwLock<HashMap<[String; 3], Begun>>,
     /// Answers as last read, by study and versions: what has come since is all that a result has to read.
@@ -71,6 +75,7 @@ impl App {
         maker: Arc<dyn Maker>,
         studies: Vec<StudyDefinition>,
         secure_cookies: bool,
+        links: Links,
     ) -> App {
         let loaded = |study: StudyDefinition| LoadedStudy {
             file_hash: study.file_hash(),
@@ -87,6 +92,8 @@ impl App {
             judging: Semaphore::new(2),
             reporting: Semaphore::new(1),
             secure_cookies,
+            links,
+            previews: Previews::default(),
             begun: RwLock::default(),
             answers: tokio::sync::Mutex::default(),
         }

@@ -29,6 +29,9 @@ pub enum StartError {
     /// A study is wrong.
     #[error(transparent)]
     Study(#[from] StudyFileError),
+    /// The key of signed links can be neither read nor made.
+    #[error("link-key: {0}")]
+    LinkKey(std::io::Error),
     /// The researcher's password cannot be set up.
     #[error("researcher password: {0}")]
     Password(String),

@@ -264,12 +264,11 @@ fn draw(
         Condition::Rendered { .. } => maker.make(task, library, progress),
         Condition::Files { .. } => {
             let (path, bytes) = picture_file(task, library)?;
-            let (media_type, size) =
-                picture::describe(&bytes).ok_or(format!("{path}: is neither PNG nor JPEG"))?;
-            if size != task.study.size {
-                let ([w, h], [sw, sh]) = (size, task.study.size);
-                return Err(format!("{path}: has {w} × {h} pixels; the study's size is {sw} × {sh}"));
+            if let Some(rule) = picture::broken(&path, &bytes, task.study.size).first() {
+                return Err(format!("{path}: {rule}"));
             }
+            let (media_type, _) =
+                picture::describe(&bytes).ok_or(format!("{path}: is neither PNG nor JPEG"))?;
             let provenance = json!({ "source": "file", "file": path });
             Ok(Made { media_type: media_type.to_owned(), bytes, attachments: Vec::new(), provenance })
         }

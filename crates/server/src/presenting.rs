@@ -20,6 +20,20 @@ const MOST_ADDRESSES: usize = 200_000;
 /// Length of what is a session's own at the end of its bytes.
 const TAIL: usize = 32;
 
+/// The session, or the preview, that is told.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Whose<'a> {
+    pub(crate) session_id: &'a str,
+    /// Hash of its secret, from which what is its own is made.
+    pub(crate) token_hash: &'a str,
+}
+
+impl<'a> Whose<'a> {
+    pub(crate) fn of(session: &'a Session) -> Whose<'a> {
+        Whose { session_id: &session.session_id, token_hash: &session.token_hash }
+    }
+}
+
 /// A stimulus as one session gets it.
 #[derive(Clone, Debug)]
 pub(crate) struct Presented {
@@ -50,11 +64,11 @@ impl Default for Presenter {
 }
 
 impl Presenter {
-    /// What the page of a session is told of a trial's stimuli.
+    /// What a page is told of a trial's stimuli.
     pub(crate) async fn tell(
         &self,
         store: &Store,
-        session: &Session,
+        whose: Whose<'_>,
         trial: &PlannedTrial,
     ) -> Result<BTreeMap<Role, StimulusRef>, Box<Problem>> {
         let mut longest = 0;
@@ -66,10 +80,10 @@ impl Presenter {
         for (role, hashes) in &trial.stimuli {
             let stimulus = hashes.sha256.clone();
             let mut hash = self.begun(store, &stimulus, length).await?;
-            let tail = secret(session, "tail", &stimulus, length)?;
+            let tail = secret(whose, "tail", &stimulus, length)?;
             hash.update(tail);
-            let address = hex(&secret(session, "address", &stimulus, length)?[..16]);
-            let url = address_of(&session.session_id, &address);
+            let address = hex(&secret(whose, "address", &stimulus, length)?[..16]);
+            let url = address_of(whose.session_id, &address);
             self.remember(url.clone(), Presented { stimulus, length, tail });
             told.insert(*role, StimulusRef { sha256: hex(&hash.finalize()), url });
         }
@@ -89,7 +103,7 @@ impl Presenter {
         }
         let Some(session) = store.session(session_id).await? else { return Ok(None) };
         for trial in store.trials(session_id).await? {
-            self.tell(store, &session, &trial).await?;
+            self.tell(store, Whose::of(&session), &trial).await?;
             if let Some(found) = self.known(&url) {
                 return Ok(Some(found));
             }
@@ -183,8 +197,8 @@ fn address_of(session_id: &str, address: &str) -> String {
 }
 
 /// A value that only who knows the session's secret can tell; the same each time.
-fn secret(session: &Session, what: &str, stimulus: &str, length: u64) -> Result<[u8; TAIL], Box<Problem>> {
-    let mac = Hmac::<Sha256>::new_from_slice(session.token_hash.as_bytes()).map_err(Problem::internal)?;
+fn secret(whose: Whose<'_>, what: &str, stimulus: &str, length: u64) -> Result<[u8; TAIL], Box<Problem>> {
+    let mac = Hmac::<Sha256>::new_from_slice(whose.token_hash.as_bytes()).map_err(Problem::internal)?;
     let mac = mac.chain_update(format!("kelir-stimulus/1\n{what}\n{stimulus}\n{length}"));
     Ok(mac.finalize().into_bytes().into())
 }

@@ -3,6 +3,7 @@
 use crate::app::{App, LoadedStudy, Served, Stimuli};
 use crate::error::StartError;
 use crate::library::Library;
+use crate::links::Links;
 use crate::making::{self, Maker, Making};
 use crate::{password, routes};
 use axum::Router;
@@ -50,7 +51,8 @@ impl Server {
         for study in &studies {
             store.put_study_file(study).await?;
         }
-        let app = App::new(store, library, config.maker.clone(), studies, config.secure_cookies);
+        let links = Links::open(&config.data).map_err(StartError::LinkKey)?;
+        let app = App::new(store, library, config.maker.clone(), studies, config.secure_cookies, links);
         Ok(Server { app: Arc::new(app) })
     }
 

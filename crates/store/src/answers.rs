@@ -7,12 +7,14 @@ use crate::first_chain::{self, GENESIS};
 use crate::plans::{PlannedTrial, decided, insert_trials, trial};
 use crate::sessions::Session;
 use crate::sqlite::Store;
+use crate::writer::Refused;
 use kelir_study::trials::Role;
+use rusqlite::{Connection, OptionalExtension, params};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use sqlx::Row;
-use sqlx::sqlite::{SqliteConnection, SqliteRow};
+use sqlx::sqlite::SqliteRow;
 use std::collections::BTreeMap;
 
 /// An answer to one trial.
@@ -114,39 +116,14 @@ impl Store {
     ///
     /// # Errors
     /// The database fails, or `next` does; nothing is stored.
-    pub async fn append_answer<E: From<StoreError>>(
+    pub async fn append_answer<E: From<StoreError> + Send + 'static>(
         &self,
         session: &Session,
         new: &NewAnswer,
-        next: impl FnOnce(Progress) -> Result<NextTrials, E>,
+        next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Appended, E> {
-        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await.map_err(StoreError::from)?;
-        if let Some(stored) = stored(&mut tx, &session.session_id, new).await? {
-            return Ok(stored);
-        }
-        let Some(planned) = trial(&mut tx, &session.session_id, new.trial_index).await? else {
-            return Ok(Appended::NoSuchTrial);
-        };
-        let mut chain = Head::read(&mut tx, &session.study_id).await?;
-        let now = clock::now();
-        chain.append(&mut tx, session, &planned, new, &now).await?;
-        let mut more = more(&mut tx, &session.session_id).await?;
-        if more {
-            let trials = decided(&mut tx, &session.session_id, 0).await?;
-            let answers = answers_of(&mut tx, &session.session_id).await?;
-            let next = next(Progress { answers, trials })?;
-            insert_trials(&mut tx, &session.session_id, &next.trials, &now, chain.seq).await?;
-            more = next.more;
-        }
-        sqlx::query("UPDATE sessions SET last_seen_at = $2, more = $3 WHERE session_id = $1")
-            .bind(&session.session_id)
-            .bind(&now)
-            .bind(more)
-            .execute(&mut *tx)
-            .await
-            .map_err(StoreError::from)?;
-        tx.commit().await.map_err(StoreError::from)?;
-        Ok(Appended::Stored)
+        let (session, new) = (session.clone(), new.clone());
+        self.write_or(move |writer| append(writer, &session, &new, next)).await
     }
 
     /// All answers to these versions of a study, in the order they came.
@@ -177,73 +154,96 @@ impl Store {
     }
 }
 
+fn append<E>(
+    writer: &Connection,
+    session: &Session,
+    new: &NewAnswer,
+    next: impl FnOnce(Progress) -> Result<NextTrials, E>,
+) -> Result<Appended, Refused<E>> {
+    if let Some(stored) = stored(writer, &session.session_id, new)? {
+        return Ok(stored);
+    }
+    let Some(planned) = trial(writer, &session.session_id, new.trial_index)? else {
+        return Ok(Appended::NoSuchTrial);
+    };
+    let mut chain = Head::read(writer, &session.study_id)?;
+    let now = clock::now();
+    chain.append(writer, session, &planned, new, &now)?;
+    let mut more = more(writer, &session.session_id)?;
+    if more {
+        let trials = decided(writer, &session.session_id, 0)?;
+        let answers = answers_of(writer, &session.session_id)?;
+        let next = next(Progress { answers, trials }).map_err(Refused::Caller)?;
+        insert_trials(writer, &session.session_id, &next.trials, &now, chain.seq)?;
+        more = next.more;
+    }
+    let mut seen =
+        writer.prepare_cached("UPDATE sessions SET last_seen_at = ?2, more = ?3 WHERE session_id = ?1")?;
+    seen.execute(params![session.session_id, now, more])?;
+    Ok(Appended::Stored)
+}
+
 /// Whether answers will decide more trials of this session.
-async fn more(writer: &mut SqliteConnection, session_id: &str) -> Result<bool, StoreError> {
-    let query = sqlx::query_scalar("SELECT more FROM sessions WHERE session_id = $1").bind(session_id);
-    Ok(query.fetch_one(writer).await?)
+fn more(writer: &Connection, session_id: &str) -> Result<bool, StoreError> {
+    let mut query = writer.prepare_cached("SELECT more FROM sessions WHERE session_id = ?1")?;
+    Ok(query.query_row([session_id], |row| row.get(0))?)
 }
 
 /// What stands where `new` would go, if anything does.
-async fn stored(
-    writer: &mut SqliteConnection,
-    session_id: &str,
-    new: &NewAnswer,
-) -> Result<Option<Appended>, StoreError> {
-    let second = sqlx::query(
-        "SELECT json_extract(a.row, '$[6]') AS received_at, c.answer, c.payload FROM answers a
+fn stored(writer: &Connection, session_id: &str, new: &NewAnswer) -> Result<Option<Appended>, StoreError> {
+    let place = (session_id, new.trial_index);
+    let different = |received_at, answer: Option<String>, payload: Option<String>| {
+        let json = |text: Option<String>| text.and_then(|text| serde_json::from_str(&text).ok());
+        let stored = StoredAnswer { received_at, answer: json(answer), payload: json(payload) };
+        Some(Appended::Different(Box::new(stored)))
+    };
+    let mut second = writer.prepare_cached(
+        "SELECT json_extract(a.row, '$[6]'), c.answer, c.payload FROM answers a
          LEFT JOIN answer_contents c ON c.study_id = a.study_id AND c.seq = a.seq
-         WHERE a.session_id = $1 AND a.trial_index = $2",
-    );
-    let second = second.bind(session_id).bind(new.trial_index).fetch_optional(&mut *writer).await?;
-    let json = |text: &Option<String>| text.as_ref().and_then(|text| serde_json::from_str(text).ok());
-    if let Some(row) = second {
-        let (answer, payload): (Option<String>, Option<String>) =
-            (row.try_get("answer")?, row.try_get("payload")?);
-        if payload.as_ref() == Some(&new.payload) {
-            return Ok(Some(Appended::Same));
-        }
-        let received_at = row.try_get("received_at")?;
-        let stored = StoredAnswer { received_at, answer: json(&answer), payload: json(&payload) };
-        return Ok(Some(Appended::Different(Box::new(stored))));
+         WHERE a.session_id = ?1 AND a.trial_index = ?2",
+    )?;
+    let found = second
+        .query_row(place, |row| Ok((row.get(0)?, row.get(1)?, row.get::<_, Option<String>>(2)?)))
+        .optional()?;
+    if let Some((received_at, answer, payload)) = found {
+        let same = payload.as_ref() == Some(&new.payload);
+        return Ok(if same { Some(Appended::Same) } else { different(received_at, answer, payload) });
     }
-    let first = sqlx::query(
-        "SELECT r.choice, r.rt_ms, r.received_at, p.payload FROM responses r LEFT JOIN response_payloads p USING (response_id)
-         WHERE r.session_id = $1 AND r.trial_index = $2",
-    );
-    let first = first.bind(session_id).bind(new.trial_index).fetch_optional(writer).await?;
-    first
-        .map(|row| {
-            let payload: Option<String> = row.try_get("payload")?;
-            // Version 1 kept what came as its own JSON writer has it.
-            let sent: Option<Value> = serde_json::from_str(&new.payload).ok();
-            if payload.is_some() && payload == sent.map(|sent| sent.to_string()) {
-                return Ok(Appended::Same);
-            }
-            let answer = Some(first_chain::answer(row.try_get("choice")?, row.try_get("rt_ms")?)?);
-            let received_at = row.try_get("received_at")?;
-            let stored = StoredAnswer { received_at, answer: json(&answer), payload: json(&payload) };
-            Ok(Appended::Different(Box::new(stored)))
+    let mut first = writer.prepare_cached(
+        "SELECT r.received_at, r.choice, r.rt_ms, p.payload FROM responses r LEFT JOIN response_payloads p USING (response_id)
+         WHERE r.session_id = ?1 AND r.trial_index = ?2",
+    )?;
+    let found = first
+        .query_row(place, |row| {
+            Ok((row.get(0)?, row.get::<_, String>(1)?, row.get(2)?, row.get::<_, Option<String>>(3)?))
         })
-        .transpose()
+        .optional()?;
+    let Some((received_at, choice, rt_ms, payload)) = found else { return Ok(None) };
+    // Version 1 kept what came as its own JSON writer has it.
+    let sent: Option<Value> = serde_json::from_str(&new.payload).ok();
+    if payload.is_some() && payload == sent.map(|sent| sent.to_string()) {
+        return Ok(Some(Appended::Same));
+    }
+    Ok(different(received_at, Some(first_chain::answer(&choice, rt_ms)?), payload))
 }
 
 /// Every answer of a session by trial index, as canonical JSON; without those withdrawn.
-async fn answers_of(
-    connection: &mut SqliteConnection,
-    session_id: &str,
-) -> Result<BTreeMap<u32, String>, StoreError> {
+fn answers_of(connection: &Connection, session_id: &str) -> Result<BTreeMap<u32, String>, StoreError> {
     let mut answers = BTreeMap::new();
-    let first = sqlx::query("SELECT trial_index, choice, rt_ms FROM responses WHERE session_id = $1");
-    for row in first.bind(session_id).fetch_all(&mut *connection).await? {
-        let answer = first_chain::answer(row.try_get("choice")?, row.try_get("rt_ms")?)?;
-        answers.insert(row.try_get("trial_index")?, answer);
+    let mut first = connection
+        .prepare_cached("SELECT trial_index, choice, rt_ms FROM responses WHERE session_id = ?1")?;
+    let mut rows = first.query([session_id])?;
+    while let Some(row) = rows.next()? {
+        let answer = first_chain::answer(&row.get::<_, String>(1)?, row.get(2)?)?;
+        answers.insert(row.get(0)?, answer);
     }
-    let second = sqlx::query(
+    let mut second = connection.prepare_cached(
         "SELECT a.trial_index, c.answer FROM answers a JOIN answer_contents c ON c.study_id = a.study_id AND c.seq = a.seq
-         WHERE a.session_id = $1 AND c.answer IS NOT NULL",
-    );
-    for row in second.bind(session_id).fetch_all(connection).await? {
-        answers.insert(row.try_get("trial_index")?, row.try_get("answer")?);
+         WHERE a.session_id = ?1 AND c.answer IS NOT NULL",
+    )?;
+    let mut rows = second.query([session_id])?;
+    while let Some(row) = rows.next()? {
+        answers.insert(row.get(0)?, row.get(1)?);
     }
     Ok(answers)
 }
@@ -259,22 +259,21 @@ pub(crate) type RowValues<T> = (String, i64, String, u32, String, T, String, Str
 
 impl Head {
     /// The last row's; for a study without any, what its chain begins with.
-    pub(crate) async fn read(writer: &mut SqliteConnection, study_id: &str) -> Result<Head, StoreError> {
-        let last =
-            sqlx::query("SELECT seq, row_hash FROM answers WHERE study_id = $1 ORDER BY seq DESC LIMIT 1")
-                .bind(study_id)
-                .fetch_optional(&mut *writer)
-                .await?;
-        Ok(match last {
-            Some(row) => Head { seq: row.try_get("seq")?, row_hash: row.try_get("row_hash")? },
-            None => Head { seq: 0, row_hash: genesis(writer).await? },
+    pub(crate) fn read(writer: &Connection, study_id: &str) -> Result<Head, StoreError> {
+        let mut last = writer.prepare_cached(
+            "SELECT seq, row_hash FROM answers WHERE study_id = ?1 ORDER BY seq DESC LIMIT 1",
+        )?;
+        let head = |row: &rusqlite::Row<'_>| Ok(Head { seq: row.get(0)?, row_hash: row.get(1)? });
+        Ok(match last.query_row([study_id], head).optional()? {
+            Some(head) => head,
+            None => Head { seq: 0, row_hash: genesis(writer)? },
         })
     }
 
     /// Writes the next row and what it holds, and moves on to it.
-    pub(crate) async fn append(
+    pub(crate) fn append(
         &mut self,
-        writer: &mut SqliteConnection,
+        writer: &Connection,
         session: &Session,
         planned: &PlannedTrial,
         new: &NewAnswer,
@@ -297,36 +296,24 @@ impl Head {
         ]);
         let row = kelir_jcs::canonical(values).map_err(|error| StoreError::corrupt("answer", error))?;
         let row_hash = sha256_hex(row.as_bytes());
-        sqlx::query(
-            "INSERT INTO answers (study_id, seq, session_id, trial_index, row, row_hash) VALUES ($1, $2, $3, $4, $5, $6)",
-        )
-        .bind(&session.study_id)
-        .bind(seq)
-        .bind(&session.session_id)
-        .bind(new.trial_index)
-        .bind(&row)
-        .bind(&row_hash)
-        .execute(&mut *writer)
-        .await?;
-        sqlx::query(
-            "INSERT INTO answer_contents (study_id, seq, nonce, answer, payload) VALUES ($1, $2, $3, $4, $5)",
-        )
-        .bind(&session.study_id)
-        .bind(seq)
-        .bind(nonce.as_slice())
-        .bind(&new.answer)
-        .bind(&new.payload)
-        .execute(&mut *writer)
-        .await?;
+        let mut insert = writer.prepare_cached(
+            "INSERT INTO answers (study_id, seq, session_id, trial_index, row, row_hash) VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+        )?;
+        insert.execute(params![session.study_id, seq, session.session_id, new.trial_index, row, row_hash])?;
+        let mut insert = writer.prepare_cached(
+            "INSERT INTO answer_contents (study_id, seq, nonce, answer, payload) VALUES (?1, ?2, ?3, ?4, ?5)",
+        )?;
+        insert.execute(params![session.study_id, seq, nonce, new.answer, new.payload])?;
         *self = Head { seq, row_hash };
         Ok(())
     }
 }
 
 /// What a chain of version 2 begins with: the last hash of version 1.
-pub(crate) async fn genesis(connection: &mut SqliteConnection) -> Result<String, StoreError> {
-    let last = sqlx::query_scalar("SELECT row_hash FROM responses ORDER BY response_id DESC LIMIT 1");
-    Ok(last.fetch_optional(connection).await?.unwrap_or_else(|| GENESIS.to_owned()))
+pub(crate) fn genesis(connection: &Connection) -> Result<String, StoreError> {
+    let mut last =
+        connection.prepare_cached("SELECT row_hash FROM responses ORDER BY response_id DESC LIMIT 1")?;
+    Ok(last.query_row([], |row| row.get(0)).optional()?.unwrap_or_else(|| GENESIS.to_owned()))
 }
 
 /// SHA-256 (hex) over nonce, answer, line feed and payload.

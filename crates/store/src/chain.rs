@@ -6,6 +6,7 @@ use crate::error::StoreError;
 use crate::files::sha256_hex;
 use crate::first_chain::{self, FirstRow, GENESIS};
 use crate::sqlite::Store;
+use rusqlite::params;
 use serde::Serialize;
 use serde::de::IgnoredAny;
 use sqlx::Row;
@@ -58,7 +59,7 @@ impl Store {
     pub async fn verify_chain(&self, study_id: &str) -> Result<ChainReport, StoreError> {
         let mut report = ChainReport { rows: 0, head: GENESIS.to_owned(), faults: Vec::new(), blanked: 0 };
         self.verify_first(&mut report).await?;
-        report.head = genesis(&mut *self.reader.acquire().await?).await?;
+        report.head = self.readers.read(genesis).await?;
         self.verify_second(study_id, &mut report).await?;
         for fault in &mut report.faults {
             fault.note = sqlx::query_scalar(
@@ -128,18 +129,15 @@ impl Store {
         note: &str,
         author: &str,
     ) -> Result<(), StoreError> {
-        sqlx::query(
-            "INSERT INTO chain_notes (chain, study_id, seq, note, author, written_at) VALUES ($1, $2, $3, $4, $5, $6)",
-        )
-        .bind(chain)
-        .bind(study_id)
-        .bind(seq)
-        .bind(note)
-        .bind(author)
-        .bind(clock::now())
-        .execute(&self.writer)
-        .await?;
-        Ok(())
+        let [study_id, note, author] = [study_id, note, author].map(str::to_owned);
+        self.write(move |writer| {
+            writer.execute(
+                "INSERT INTO chain_notes (chain, study_id, seq, note, author, written_at) VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+                params![chain, study_id, seq, note, author, clock::now()],
+            )?;
+            Ok(())
+        })
+        .await
     }
 }
 

@@ -6,12 +6,20 @@ pub enum StoreError {
     /// The database refused or failed.
     #[error("database: {0}")]
     Database(#[from] sqlx::Error),
-    /// The database could not be read for an analysis.
-    #[error("reading answers: {0}")]
-    Reading(#[from] rusqlite::Error),
+    /// The database refused or failed.
+    #[error("database: {0}")]
+    Sqlite(#[from] rusqlite::Error),
+    /// What others of the same transaction ran into; nothing of it is stored.
+    #[error("{message}")]
+    Trouble {
+        /// What kind of trouble.
+        trouble: Trouble,
+        /// What was said of it.
+        message: String,
+    },
     /// The database's layout could not be brought up to date.
     #[error("migrating the database: {0}")]
-    Migrate(#[from] sqlx::migrate::MigrateError),
+    Migrate(String),
     /// A file could not be read or written.
     #[error("{path}: {source}")]
     File {
@@ -39,7 +47,90 @@ pub enum StoreError {
     },
 }
 
+/// What keeps a store from storing that no request is to blame for. It can pass: whoever asks again later may be served.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// The disk is full.
+    Full,
+    /// Another process holds the database's lock.
+    Locked,
+    /// The database or its folder may not be written to.
+    ReadOnly,
+    /// The disk fails.
+    Failing,
+    /// The database's file is damaged.
+    Damaged,
+}
+
+impl Trouble {
+    /// What is the matter, for people.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Trouble::Full => "The server's disk is full.",
+            Trouble::Locked => "Another program holds the server's database.",
+            Trouble::ReadOnly => "The server's data folder cannot be written to.",
+            Trouble::Failing => "The server's disk does not do what it is asked.",
+            Trouble::Damaged => "The server's database is damaged.",
+        }
+    }
+
+    /// What a result code of SQLite's means, extended or not.
+    fn of_code(code: i32) -> Option<Trouble> {
+        use rusqlite::ffi;
+        match code & 0xff {
+            ffi::SQLITE_FULL => Some(Trouble::Full),
+            ffi::SQLITE_BUSY | ffi::SQLITE_LOCKED => Some(Trouble::Locked),
+            ffi::SQLITE_READONLY => Some(Trouble::ReadOnly),
+            ffi::SQLITE_IOERR | ffi::SQLITE_CANTOPEN | ffi::SQLITE_NOMEM | ffi::SQLITE_PROTOCOL => {
+                Some(Trouble::Failing)
+            }
+            ffi::SQLITE_CORRUPT | ffi::SQLITE_NOTADB => Some(Trouble::Damaged),
+            _ => None,
+        }
+    }
+
+    fn of_io(error: &std::io::Error) -> Option<Trouble> {
+        use std::io::ErrorKind;
+        match error.kind() {
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+                Some(Trouble::Full)
+            }
+            ErrorKind::ReadOnlyFilesystem | ErrorKind::PermissionDenied => Some(Trouble::ReadOnly),
+            ErrorKind::NotFound => None,
+            _ => Some(Trouble::Failing),
+        }
+    }
+}
+
 impl StoreError {
+    /// The trouble that this is; `None` where the request or what is stored is to blame.
+    pub fn as_trouble(&self) -> Option<Trouble> {
+        match self {
+            StoreError::Trouble { trouble, .. } => Some(*trouble),
+            StoreError::Sqlite(rusqlite::Error::SqliteFailure(failure, _)) => {
+                Trouble::of_code(failure.extended_code)
+            }
+            StoreError::Database(sqlx::Error::Database(error)) => {
+                error.code().and_then(|code| Trouble::of_code(code.parse().ok()?))
+            }
+            // Every connection is waiting for something.
+            StoreError::Database(sqlx::Error::PoolTimedOut) => Some(Trouble::Failing),
+            StoreError::Database(sqlx::Error::Io(source)) | StoreError::File { source, .. } => {
+                Trouble::of_io(source)
+            }
+            _ => None,
+        }
+    }
+
+    pub(crate) fn trouble(trouble: Trouble, message: impl ToString) -> Self {
+        StoreError::Trouble { trouble, message: message.to_string() }
+    }
+
+    /// The same to somebody else of the same transaction.
+    pub(crate) fn told(&self) -> Self {
+        StoreError::trouble(self.as_trouble().unwrap_or(Trouble::Failing), self)
+    }
+
     pub(crate) fn corrupt(what: &'static str, message: impl ToString) -> Self {
         StoreError::Corrupt { what, message: message.to_string() }
     }

@@ -6,6 +6,7 @@ use crate::error::StoreError;
 use crate::plans::{PlannedSession, insert_trials};
 use crate::sessions::{Session, insert_session};
 use crate::sqlite::Store;
+use rusqlite::Connection;
 use serde_json::json;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -36,49 +37,51 @@ impl Store {
     /// # Errors
     /// The database refuses, or an answer has no trial; nothing is stored.
     pub async fn import_sessions(&self, sessions: Vec<ImportedSession>) -> Result<(), StoreError> {
-        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
-        let mut chains = HashMap::<String, Head>::new();
-        for imported in sessions {
-            let session_id = uuid::Uuid::now_v7().to_string();
-            let now = clock::now();
-            let session = Session {
-                subject_id: session_id.clone(),
-                session_id,
-                study_id: imported.study_id,
-                version: imported.version,
-                file_hash: imported.file_hash,
-                token_hash: String::new(),
-                kind: Default::default(),
-                flags: Vec::new(),
-                start_key: None,
-                user_agent: None,
-                slot: imported.slot,
-                plan_seed: imported.planned.seed,
-                more: imported.planned.next.more,
-                params: json!({}),
-                display: json!({}),
-                created_at: now.clone(),
-                last_seen_at: now.clone(),
-                consented_at: Some(now.clone()),
-                consent_sha256: None,
-                completed_at: imported.completion_code.as_ref().map(|_| now.clone()),
-                completion_code: imported.completion_code,
-            };
-            insert_session(&mut tx, &session).await?;
-            let trials = &imported.planned.next.trials;
-            insert_trials(&mut tx, &session.session_id, trials, &now, 0).await?;
-            let chain = match chains.entry(session.study_id.clone()) {
-                Entry::Occupied(chain) => chain.into_mut(),
-                Entry::Vacant(place) => place.insert(Head::read(&mut tx, &session.study_id).await?),
-            };
-            for answer in &imported.answers {
-                let planned = trials.get(answer.trial_index as usize).ok_or_else(|| {
-                    StoreError::corrupt("import", "an answer to a trial that is not planned")
-                })?;
-                chain.append(&mut tx, &session, planned, answer, &now).await?;
-            }
-        }
-        tx.commit().await?;
-        Ok(())
+        self.write(move |writer| import(writer, sessions)).await
     }
+}
+
+fn import(writer: &Connection, sessions: Vec<ImportedSession>) -> Result<(), StoreError> {
+    let mut chains = HashMap::<String, Head>::new();
+    for imported in sessions {
+        let session_id = uuid::Uuid::now_v7().to_string();
+        let now = clock::now();
+        let session = Session {
+            subject_id: session_id.clone(),
+            session_id,
+            study_id: imported.study_id,
+            version: imported.version,
+            file_hash: imported.file_hash,
+            token_hash: String::new(),
+            kind: Default::default(),
+            flags: Vec::new(),
+            start_key: None,
+            user_agent: None,
+            slot: imported.slot,
+            plan_seed: imported.planned.seed,
+            more: imported.planned.next.more,
+            params: json!({}),
+            display: json!({}),
+            created_at: now.clone(),
+            last_seen_at: now.clone(),
+            consented_at: Some(now.clone()),
+            consent_sha256: None,
+            completed_at: imported.completion_code.as_ref().map(|_| now.clone()),
+            completion_code: imported.completion_code,
+        };
+        insert_session(writer, &session)?;
+        let trials = &imported.planned.next.trials;
+        insert_trials(writer, &session.session_id, trials, &now, 0)?;
+        let chain = match chains.entry(session.study_id.clone()) {
+            Entry::Occupied(chain) => chain.into_mut(),
+            Entry::Vacant(place) => place.insert(Head::read(writer, &session.study_id)?),
+        };
+        for answer in &imported.answers {
+            let planned = trials
+                .get(answer.trial_index as usize)
+                .ok_or_else(|| StoreError::corrupt("import", "an answer to a trial that is not planned"))?;
+            chain.append(writer, &session, planned, answer, &now)?;
+        }
+    }
+    Ok(())
 }

@@ -1,4 +1,4 @@
-//! Nothing lost: sessions, answers and stimuli in SQLite (through sqlx; rusqlite for the analyses' one long read) and in files named by their content.
+//! Nothing lost: sessions, answers and stimuli in SQLite (through rusqlite where it writes, sqlx for most reads) and in files named by their content.
 //!
 //! What a method has returned `Ok` for is committed and synced. One connection writes, so that the chain of answers has one
 //! order; several read. [`Store`] is the one type the rest of kelir knows; which database is behind it is its own business.
@@ -12,9 +12,11 @@ mod first_chain;
 mod import;
 mod packing;
 mod packings;
+mod layout;
 mod persons;
 mod pixels;
 mod plans;
+mod readers;
 mod reading;
 mod researchers;
 mod sessions;
@@ -22,17 +24,19 @@ mod sqlite;
 mod stimuli;
 mod upgrade;
 mod versions;
+mod writer;
 
 pub use answers::{AnswerRow, Appended, NewAnswer, NextTrials, Progress, ShownStimulus, StoredAnswer};
 pub use chain::{ChainReport, Fault};
 pub use clock::micros;
-pub use error::StoreError;
+pub use error::{StoreError, Trouble};
 pub use files::sha256_hex;
 pub use first_chain::GENESIS;
 pub use import::ImportedSession;
 pub use packing::PACKED;
 pub use packings::Packing;
 pub use persons::Begun;
+pub use pixels::picture_size;
 pub use plans::{PlannedSession, PlannedTrial, StimulusHashes};
 pub use reading::StoredAnswers;
 pub use sessions::{Completed, NewSession, Participants, Session, SessionKind};

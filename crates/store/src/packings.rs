@@ -1,10 +1,11 @@
 //! What browsers get of stored stimuli, made once and kept beside them.
 
+use crate::clock;
 use crate::error::StoreError;
 use crate::packing::{PACKER, pack, unpacked};
 use crate::sqlite::Store;
 use crate::stimuli::{StimulusInfo, blocking};
-use sqlx::Row;
+use rusqlite::{OptionalExtension, Row, params};
 
 /// A stored stimulus as browsers get it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,17 +22,15 @@ impl Store {
     /// # Errors
     /// [`StoreError::Undecodable`] where the packing would not show the very pixels; the stimulus cannot be read, or its packing not be kept.
     pub async fn packing(&self, sha256: &str) -> Result<Option<Packing>, StoreError> {
-        let row = sqlx::query("SELECT packed_sha256, size_bytes FROM packings WHERE sha256 = $1 AND packer = $2")
-            .bind(sha256)
-            .bind(PACKER)
-            .fetch_optional(&self.reader)
-            .await?;
-        if let Some(row) = row {
-            let (packed_sha256, size_bytes) =
-                (row.try_get("packed_sha256")?, row.try_get::<i64, _>("size_bytes")? as u64);
-            if self.files.has(&packed_sha256, size_bytes) {
-                return Ok(Some(Packing { packed_sha256, size_bytes }));
-            }
+        let (name, found) = (sha256.to_owned(), "SELECT packed_sha256, size_bytes FROM packings WHERE sha256 = ?1 AND packer = ?2");
+        let known = self.readers.read(move |reader| {
+            let packing = |row: &Row<'_>| {
+                Ok(Packing { packed_sha256: row.get(0)?, size_bytes: row.get::<_, i64>(1)? as u64 })
+            };
+            Ok(reader.prepare_cached(found)?.query_row(params![name, PACKER], packing).optional()?)
+        });
+        if let Some(packing) = known.await?.filter(|p| self.files.has(&p.packed_sha256, p.size_bytes)) {
+            return Ok(Some(packing));
         }
         match self.stimulus_info(sha256).await? {
             Some(info) => self.make_packing(info).await.map(Some),
@@ -53,14 +52,15 @@ impl Store {
             Ok((files.put(&packed)?, packed.len() as u64))
         })
         .await?;
-        sqlx::query("INSERT OR REPLACE INTO packings (sha256, packer, packed_sha256, size_bytes) VALUES ($1, $2, $3, $4)")
-            .bind(&sha256)
-            .bind(PACKER)
-            .bind(&packed_sha256)
-            .bind(size_bytes as i64)
-            .execute(&self.writer)
-            .await?;
-        Ok(Packing { packed_sha256, size_bytes })
+        let packing = Packing { packed_sha256, size_bytes };
+        self.write(move |writer| {
+            writer.execute(
+                "INSERT OR REPLACE INTO packings (sha256, packer, packed_sha256, size_bytes) VALUES (?1, ?2, ?3, ?4)",
+                params![sha256, PACKER, packing.packed_sha256, size_bytes as i64],
+            )?;
+            Ok(packing)
+        })
+        .await
     }
 
     /// Forgets a packing whose file turned out damaged: it is made anew when it is asked for next.
@@ -68,8 +68,12 @@ impl Store {
     /// # Errors
     /// The database refuses.
     pub async fn forget_packing(&self, sha256: &str) -> Result<(), StoreError> {
-        sqlx::query("DELETE FROM packings WHERE sha256 = $1").bind(sha256).execute(&self.writer).await?;
-        Ok(())
+        let sha256 = sha256.to_owned();
+        self.write(move |writer| {
+            writer.execute("DELETE FROM packings WHERE sha256 = ?1", [sha256])?;
+            Ok(())
+        })
+        .await
     }
 
     /// The bytes of a file by its name, as they are on disk: what is read for every request is checked in the background, not here.
@@ -86,11 +90,12 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn stimulus_access(&self, sha256: &str) -> Result<Option<(String, bool)>, StoreError> {
-        let row = sqlx::query("SELECT media_type, coalesce(open_until > $2, 0) AS open FROM stimuli WHERE sha256 = $1")
-            .bind(sha256)
-            .bind(crate::clock::now())
-            .fetch_optional(&self.reader)
-            .await?;
-        row.map(|row| Ok((row.try_get("media_type")?, row.try_get("open")?))).transpose()
+        let sha256 = sha256.to_owned();
+        let found = "SELECT media_type, coalesce(open_until > ?2, 0) FROM stimuli WHERE sha256 = ?1";
+        let row = |row: &Row<'_>| Ok((row.get(0)?, row.get(1)?));
+        let read = self.readers.read(move |reader| {
+            Ok(reader.prepare_cached(found)?.query_row(params![sha256, clock::now()], row).optional()?)
+        });
+        read.await
     }
 }

@@ -2,12 +2,11 @@
 
 use crate::clock;
 use crate::error::StoreError;
-use crate::sessions::{NewSession, Session, SessionKind, read_session};
-use crate::sqlite::{DATABASE, Store};
+use crate::sessions::{NewSession, Session, SessionKind};
+use crate::sqlite::Store;
 use kelir_study::Repeat;
 use kelir_study::visits::{Flag, Visit};
-use rusqlite::{Connection, OpenFlags};
-use sqlx::sqlite::SqliteConnection;
+use rusqlite::{Connection, OptionalExtension};
 use std::time::Duration;
 
 /// What came of somebody's wish to begin.
@@ -34,47 +33,51 @@ impl Begun {
     }
 }
 
+/// What the writer made of it.
+pub(crate) enum Settled {
+    /// A new session.
+    New(Box<Session>),
+    /// The session of this id goes on.
+    Again(String),
+    /// None.
+    Refused { is_finished: bool },
+}
+
 /// The session of the same person that comes first to mind: a finished one, else the last with consent, else the last.
-const OF_PERSON: &str = "SELECT * FROM sessions WHERE study_id = $1 AND subject_id = $2 AND session_id <> subject_id AND kind = 'participant'
+const OF_PERSON: &str = "SELECT session_id, consented_at IS NOT NULL, completed_at IS NOT NULL FROM sessions
+     WHERE study_id = ?1 AND subject_id = ?2 AND session_id <> subject_id AND kind = 'participant'
      ORDER BY completed_at IS NULL, consented_at IS NULL, session_id DESC LIMIT 1";
 
 /// What the study's policy makes of somebody whose id has a session already; `None`: a new session begins, flagged where need be. In the
 /// transaction that begins it, so that two tabs at once are two visits of one person too.
-pub(crate) async fn settle(
-    writer: &mut SqliteConnection,
-    new: &mut NewSession,
-) -> Result<Option<Begun>, StoreError> {
+pub(crate) fn settle(writer: &Connection, new: &mut NewSession) -> Result<Option<Settled>, StoreError> {
     let Some(person) = new.subject_id.as_ref().filter(|_| new.kind == SessionKind::Participant) else {
         return Ok(None);
     };
-    let known = sqlx::query(OF_PERSON).bind(&new.study_id).bind(person).fetch_optional(&mut *writer).await?;
-    let Some(known) = known.as_ref().map(read_session).transpose()? else { return Ok(None) };
-    let is_finished = known.completed_at.is_some();
+    let known = writer
+        .prepare_cached(OF_PERSON)?
+        .query_row([&new.study_id, person], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))
+        .optional()?;
+    let Some((session_id, is_consented, is_finished)): Option<(String, bool, bool)> = known else {
+        return Ok(None);
+    };
     match new.repeat {
         Repeat::Flag => {
             new.flags.push(Flag::RepeatedId.as_str().to_owned());
             Ok(None)
         }
         // Without consent nothing has been seen or said: whoever has the link may begin.
-        _ if known.consented_at.is_none() => go_on(writer, known, new).await.map(Some),
-        Repeat::Resume if !is_finished => go_on(writer, known, new).await.map(Some),
-        Repeat::Resume | Repeat::Refuse => Ok(Some(Begun::Refused { is_finished })),
+        _ if !is_consented => go_on(writer, session_id, new).map(Some),
+        Repeat::Resume if !is_finished => go_on(writer, session_id, new).map(Some),
+        Repeat::Resume | Repeat::Refuse => Ok(Some(Settled::Refused { is_finished })),
     }
 }
 
-async fn go_on(
-    writer: &mut SqliteConnection,
-    mut known: Session,
-    new: &NewSession,
-) -> Result<Begun, StoreError> {
-    (known.token_hash, known.last_seen_at) = (new.token_hash.clone(), clock::now());
-    sqlx::query("UPDATE sessions SET token_hash = $2, last_seen_at = $3 WHERE session_id = $1")
-        .bind(&known.session_id)
-        .bind(&known.token_hash)
-        .bind(&known.last_seen_at)
-        .execute(writer)
-        .await?;
-    Ok(Begun::Again(known))
+fn go_on(writer: &Connection, session_id: String, new: &NewSession) -> Result<Settled, StoreError> {
+    let mut renew = writer
+        .prepare_cached("UPDATE sessions SET token_hash = ?2, last_seen_at = ?3 WHERE session_id = ?1")?;
+    renew.execute([&session_id, &new.token_hash, &clock::now()])?;
+    Ok(Settled::Again(session_id))
 }
 
 impl Store {
@@ -88,21 +91,19 @@ impl Store {
         versions: &[String],
         idle: Duration,
     ) -> Result<Vec<Visit>, StoreError> {
-        let (database, study_id) = (self.folder.join(DATABASE), study_id.to_owned());
+        let study_id = study_id.to_owned();
         let versions = serde_json::to_string(versions).map_err(|e| StoreError::corrupt("versions", e))?;
-        let read = tokio::task::spawn_blocking(move || {
-            // As answers are read: a cursor, where sqlx would hand each row from thread to thread.
-            let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-            let connection = Connection::open_with_flags(database, flags)?;
-            connection.busy_timeout(Duration::from_secs(10))?;
-            let mut statement = connection.prepare(
-                "SELECT session_id, subject_id, kind, flags, consented_at, completed_at, completed_at IS NULL AND last_seen_at > ?3
-                 FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id",
-            )?;
-            let visits = statement.query_map((study_id, versions, clock::before_now(idle)), read_visit)?;
-            Ok(visits.collect::<Result<Vec<Visit>, _>>()?)
-        });
-        read.await.map_err(|e| StoreError::corrupt("sessions", e))?
+        self.readers
+            .read(move |connection| {
+                let mut statement = connection.prepare_cached(
+                    "SELECT session_id, subject_id, kind, flags, consented_at, completed_at, completed_at IS NULL AND last_seen_at > ?3
+                     FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id",
+                )?;
+                let since = clock::before_now(idle);
+                let visits = statement.query_map([study_id, versions, since], read_visit)?;
+                Ok(visits.collect::<Result<Vec<Visit>, _>>()?)
+            })
+            .await
     }
 }
 

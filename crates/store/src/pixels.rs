@@ -16,6 +16,14 @@ pub(crate) struct Pixels {
     pub(crate) sha256: String,
 }
 
+/// Size of a picture that can be stored: it is decoded wholly, as when it is stored.
+///
+/// # Errors
+/// Why it cannot be decoded, as a sentence's end.
+pub fn picture_size(bytes: &[u8]) -> Result<[u32; 2], String> {
+    decode(bytes).map(|image| [image.width(), image.height()])
+}
+
 /// An animation's manifest, as far as it says what is shown.
 #[derive(Deserialize)]
 pub(crate) struct Manifest {

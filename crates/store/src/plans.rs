@@ -4,9 +4,8 @@ use crate::answers::{NextTrials, ShownStimulus};
 use crate::error::StoreError;
 use crate::sqlite::Store;
 use kelir_study::trials::Role;
+use rusqlite::{Connection, OptionalExtension, params};
 use serde::{Deserialize, Serialize};
-use sqlx::Row;
-use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use std::collections::BTreeMap;
 
 /// The beginning of a slot's plan with the stimuli filled in.
@@ -75,7 +74,8 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn trials_from(&self, session_id: &str, from: u32) -> Result<Vec<PlannedTrial>, StoreError> {
-        decided(&mut *self.reader.acquire().await?, session_id, from).await
+        let session_id = session_id.to_owned();
+        self.readers.read(move |connection| decided(connection, &session_id, from)).await
     }
 
     /// One trial of a session; `None` where none of this index is decided.
@@ -87,7 +87,8 @@ impl Store {
         session_id: &str,
         trial_index: u32,
     ) -> Result<Option<PlannedTrial>, StoreError> {
-        trial(&mut *self.reader.acquire().await?, session_id, trial_index).await
+        let session_id = session_id.to_owned();
+        self.readers.read(move |connection| trial(connection, &session_id, trial_index)).await
     }
 
     /// The first trial of a session that is decided and has no answer; `None` where there is none.
@@ -95,57 +96,66 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn next_trial(&self, session_id: &str) -> Result<Option<u32>, StoreError> {
-        let query = "SELECT min(trial_index) FROM session_trials t WHERE session_id = $1
-             AND NOT EXISTS (SELECT 1 FROM answers a WHERE a.session_id = $1 AND a.trial_index = t.trial_index)
-             AND NOT EXISTS (SELECT 1 FROM responses r WHERE r.session_id = $1 AND r.trial_index = t.trial_index)";
-        Ok(sqlx::query_scalar(query).bind(session_id).fetch_one(&self.reader).await?)
+        let session_id = session_id.to_owned();
+        self.readers.read(move |connection| next_trial(connection, &session_id)).await
     }
 }
 
-pub(crate) async fn trial(
-    connection: &mut SqliteConnection,
+pub(crate) fn next_trial(connection: &Connection, session_id: &str) -> Result<Option<u32>, StoreError> {
+    let mut query = connection.prepare_cached(
+        "SELECT trial_index FROM session_trials t WHERE session_id = ?1
+         AND NOT EXISTS (SELECT 1 FROM answers a WHERE a.session_id = ?1 AND a.trial_index = t.trial_index)
+         AND NOT EXISTS (SELECT 1 FROM responses r WHERE r.session_id = ?1 AND r.trial_index = t.trial_index)
+         ORDER BY trial_index LIMIT 1",
+    )?;
+    Ok(query.query_row([session_id], |row| row.get(0)).optional()?)
+}
+
+pub(crate) fn trial(
+    connection: &Connection,
     session_id: &str,
     trial_index: u32,
 ) -> Result<Option<PlannedTrial>, StoreError> {
-    let query = sqlx::query("SELECT trial FROM session_trials WHERE session_id = $1 AND trial_index = $2");
-    query.bind(session_id).bind(trial_index).fetch_optional(connection).await?.as_ref().map(read).transpose()
+    let mut query = connection
+        .prepare_cached("SELECT trial FROM session_trials WHERE session_id = ?1 AND trial_index = ?2")?;
+    let trial: Option<String> = query.query_row((session_id, trial_index), |row| row.get(0)).optional()?;
+    trial.as_deref().map(read).transpose()
 }
 
-fn read(row: &SqliteRow) -> Result<PlannedTrial, StoreError> {
-    serde_json::from_str(row.try_get("trial")?).map_err(|e| StoreError::corrupt("trial", e))
+fn read(trial: &str) -> Result<PlannedTrial, StoreError> {
+    serde_json::from_str(trial).map_err(|e| StoreError::corrupt("trial", e))
 }
 
-pub(crate) async fn decided(
-    connection: &mut SqliteConnection,
+pub(crate) fn decided(
+    connection: &Connection,
     session_id: &str,
     from: u32,
 ) -> Result<Vec<PlannedTrial>, StoreError> {
-    let query =
-        "SELECT trial FROM session_trials WHERE session_id = $1 AND trial_index >= $2 ORDER BY trial_index";
-    let rows = sqlx::query(query).bind(session_id).bind(from).fetch_all(connection).await?;
-    rows.iter().map(read).collect()
+    let mut query = connection.prepare_cached(
+        "SELECT trial FROM session_trials WHERE session_id = ?1 AND trial_index >= ?2 ORDER BY trial_index",
+    )?;
+    let mut rows = query.query((session_id, from))?;
+    let mut trials = Vec::new();
+    while let Some(row) = rows.next()? {
+        trials.push(read(row.get_ref(0)?.as_str().map_err(rusqlite::Error::from)?)?);
+    }
+    Ok(trials)
 }
 
 /// Appends trials, decided now from the study's answers up to `after_seq`.
-pub(crate) async fn insert_trials(
-    writer: &mut SqliteConnection,
+pub(crate) fn insert_trials(
+    writer: &Connection,
     session_id: &str,
     trials: &[PlannedTrial],
     now: &str,
     after_seq: i64,
 ) -> Result<(), StoreError> {
+    let mut insert = writer.prepare_cached(
+        "INSERT INTO session_trials (session_id, trial_index, trial, decided_at, after_seq) VALUES (?1, ?2, ?3, ?4, ?5)",
+    )?;
     for planned in trials {
         let trial = serde_json::to_string(planned).map_err(|e| StoreError::corrupt("trial", e))?;
-        sqlx::query(
-            "INSERT INTO session_trials (session_id, trial_index, trial, decided_at, after_seq) VALUES ($1, $2, $3, $4, $5)",
-        )
-        .bind(session_id)
-        .bind(planned.trial.trial_index)
-        .bind(trial)
-        .bind(now)
-        .bind(after_seq)
-        .execute(&mut *writer)
-        .await?;
+        insert.execute(params![session_id, planned.trial.trial_index, trial, now, after_seq])?;
     }
     Ok(())
 }

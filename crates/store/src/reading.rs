@@ -5,19 +5,19 @@
 
 use crate::clock::micros;
 use crate::error::StoreError;
+use crate::readers::connect;
 use crate::sqlite::{DATABASE, Store};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::{Answers, Row};
 use kelir_study::trials::{Shown, rules};
 use rusqlite::fallible_streaming_iterator::FallibleStreamingIterator;
-use rusqlite::{Connection, OpenFlags, OptionalExtension, Statement};
+use rusqlite::{Connection, OptionalExtension, Statement};
 use serde::de::IgnoredAny;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// The answers to some versions of a study up to some moment. Answers are never changed, so it only ever grows:
 /// [`Store::read_on`] adds what has come since.
@@ -212,7 +212,8 @@ impl Part<'_> {
 impl Source {
     /// The answers of a chain after a row, in parts by rising rows of at least `share`, and the number of the last.
     fn read(&self, chain: &Chain, after: i64, share: i64) -> Result<(i64, Vec<Answers>), StoreError> {
-        let through: i64 = self.connect()?.query_row(chain.newest, [&*self.study_id], |row| row.get(0))?;
+        let through: i64 =
+            connect(&self.database)?.query_row(chain.newest, [&*self.study_id], |row| row.get(0))?;
         if through <= after {
             return Ok((after, Vec::new()));
         }
@@ -232,15 +233,8 @@ impl Source {
         Ok((through, answers))
     }
 
-    fn connect(&self) -> Result<Connection, rusqlite::Error> {
-        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let connection = Connection::open_with_flags(&self.database, flags)?;
-        connection.busy_timeout(Duration::from_secs(10))?;
-        Ok(connection)
-    }
-
     fn read_part(&self, chain: &Chain, range: RangeInclusive<i64>) -> Result<Answers, StoreError> {
-        let connection = self.connect()?;
+        let connection = connect(&self.database)?;
         let version =
             connection.prepare("SELECT version FROM sessions WHERE session_id = ?1 AND study_id = ?2")?;
         let mut part = Part { source: self, version, ours: HashMap::new(), answers: self.empty.clone() };

@@ -3,6 +3,7 @@
 use crate::clock;
 use crate::error::StoreError;
 use crate::sqlite::Store;
+use rusqlite::params;
 use std::time::Duration;
 
 impl Store {
@@ -22,19 +23,17 @@ impl Store {
     /// # Errors
     /// The database fails.
     pub async fn set_password_hash(&self, name: &str, hash: &str) -> Result<(), StoreError> {
-        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
-        sqlx::query(
-            "INSERT INTO researchers (name, password_hash, changed_at) VALUES ($1, $2, $3)
-             ON CONFLICT (name) DO UPDATE SET password_hash = excluded.password_hash, changed_at = excluded.changed_at",
-        )
-        .bind(name)
-        .bind(hash)
-        .bind(clock::now())
-        .execute(&mut *tx)
-        .await?;
-        sqlx::query("DELETE FROM researcher_sessions WHERE name = $1").bind(name).execute(&mut *tx).await?;
-        tx.commit().await?;
-        Ok(())
+        let [name, hash] = [name, hash].map(str::to_owned);
+        self.write(move |writer| {
+            writer.execute(
+                "INSERT INTO researchers (name, password_hash, changed_at) VALUES (?1, ?2, ?3)
+                 ON CONFLICT (name) DO UPDATE SET password_hash = excluded.password_hash, changed_at = excluded.changed_at",
+                params![name, hash, clock::now()],
+            )?;
+            writer.execute("DELETE FROM researcher_sessions WHERE name = ?1", [name])?;
+            Ok(())
+        })
+        .await
     }
 
     /// Signs a browser in for `lasting`; only the token's hash is kept.
@@ -42,20 +41,17 @@ impl Store {
     /// # Errors
     /// The database refuses, as it does an unknown researcher.
     pub async fn sign_in(&self, name: &str, token_hash: &str, lasting: Duration) -> Result<(), StoreError> {
-        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
-        sqlx::query("DELETE FROM researcher_sessions WHERE expires_at <= $1")
-            .bind(clock::now())
-            .execute(&mut *tx)
-            .await?;
-        sqlx::query("INSERT INTO researcher_sessions (token_hash, name, created_at, expires_at) VALUES ($1, $2, $3, $4)")
-            .bind(token_hash)
-            .bind(name)
-            .bind(clock::now())
-            .bind(clock::after_now(lasting))
-            .execute(&mut *tx)
-            .await?;
-        tx.commit().await?;
-        Ok(())
+        let [name, token_hash] = [name, token_hash].map(str::to_owned);
+        self.write(move |writer| {
+            let now = clock::now();
+            writer.execute("DELETE FROM researcher_sessions WHERE expires_at <= ?1", [&now])?;
+            writer.execute(
+                "INSERT INTO researcher_sessions (token_hash, name, created_at, expires_at) VALUES (?1, ?2, ?3, ?4)",
+                params![token_hash, name, now, clock::after_now(lasting)],
+            )?;
+            Ok(())
+        })
+        .await
     }
 
     /// Who is signed in with this token, if anyone still is.
@@ -77,10 +73,11 @@ impl Store {
     /// # Errors
     /// The database fails.
     pub async fn sign_out(&self, token_hash: &str) -> Result<(), StoreError> {
-        sqlx::query("DELETE FROM researcher_sessions WHERE token_hash = $1")
-            .bind(token_hash)
-            .execute(&self.writer)
-            .await?;
-        Ok(())
+        let token_hash = token_hash.to_owned();
+        self.write(move |writer| {
+            writer.execute("DELETE FROM researcher_sessions WHERE token_hash = ?1", [token_hash])?;
+            Ok(())
+        })
+        .await
     }
 }

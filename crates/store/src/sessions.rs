@@ -2,15 +2,17 @@
 
 use crate::clock;
 use crate::error::StoreError;
-use crate::persons::{Begun, settle};
+use crate::persons::{Begun, Settled, settle};
 use crate::plans::{PlannedSession, insert_trials};
 use crate::sqlite::Store;
+use crate::writer::Refused;
 use kelir_study::Repeat;
 use kelir_study::plan::lowest_free_slot;
+use rusqlite::{Connection, params};
 use serde::Serialize;
 use serde_json::{Value, json};
 use sqlx::Row;
-use sqlx::sqlite::{SqliteConnection, SqliteRow};
+use sqlx::sqlite::SqliteRow;
 use std::time::Duration;
 use utoipa::ToSchema;
 
@@ -121,57 +123,19 @@ impl Store {
     ///
     /// # Errors
     /// The database fails, or `plan` does; nothing is stored.
-    pub async fn create_session<E: From<StoreError>>(
+    pub async fn create_session<E: From<StoreError> + Send + 'static>(
         &self,
-        mut new: NewSession,
-        plan: impl FnOnce(u32) -> Result<PlannedSession, E>,
+        new: NewSession,
+        plan: impl FnOnce(u32) -> Result<PlannedSession, E> + Send + 'static,
     ) -> Result<Begun, E> {
-        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await.map_err(StoreError::from)?;
-        if let Some(settled) = settle(&mut tx, &mut new).await? {
-            tx.commit().await.map_err(StoreError::from)?;
-            return Ok(settled);
+        match self.write_or(move |writer| create(writer, new, plan)).await? {
+            Settled::New(session) => Ok(Begun::New(*session)),
+            Settled::Refused { is_finished } => Ok(Begun::Refused { is_finished }),
+            Settled::Again(session_id) => {
+                let gone = || StoreError::corrupt("sessions", "a session is gone");
+                Ok(Begun::Again(self.session(&session_id).await?.ok_or_else(gone)?))
+            }
         }
-        let held: Vec<u32> = sqlx::query_scalar(
-            "SELECT slot FROM sessions WHERE study_id = $1 AND version = $2 AND kind = 'participant'
-             AND (completed_at IS NOT NULL OR last_seen_at > $3)",
-        )
-        .bind(&new.study_id)
-        .bind(&new.version)
-        .bind(clock::before_now(new.idle))
-        .fetch_all(&mut *tx)
-        .await
-        .map_err(StoreError::from)?;
-        let slot = lowest_free_slot(held);
-        let planned = plan(slot)?;
-        let session_id = uuid::Uuid::now_v7().to_string();
-        let now = clock::now();
-        let session = Session {
-            subject_id: new.subject_id.unwrap_or_else(|| session_id.clone()),
-            session_id,
-            study_id: new.study_id,
-            version: new.version,
-            file_hash: new.file_hash,
-            token_hash: new.token_hash,
-            slot,
-            plan_seed: planned.seed,
-            more: planned.next.more,
-            kind: new.kind,
-            flags: new.flags,
-            start_key: new.start_key,
-            user_agent: new.user_agent,
-            params: new.params,
-            display: new.display,
-            created_at: now.clone(),
-            last_seen_at: now,
-            consented_at: None,
-            consent_sha256: None,
-            completed_at: None,
-            completion_code: None,
-        };
-        insert_session(&mut tx, &session).await?;
-        insert_trials(&mut tx, &session.session_id, &planned.next.trials, &session.created_at, 0).await?;
-        tx.commit().await.map_err(StoreError::from)?;
-        Ok(Begun::New(session))
     }
 
     /// The session with this id; `None` for an unknown one.
@@ -207,12 +171,14 @@ impl Store {
     /// # Errors
     /// The database fails.
     pub async fn touch_session(&self, session_id: &str) -> Result<(), StoreError> {
-        sqlx::query("UPDATE sessions SET last_seen_at = $2 WHERE session_id = $1")
-            .bind(session_id)
-            .bind(clock::now())
-            .execute(&self.writer)
-            .await?;
-        Ok(())
+        let session_id = session_id.to_owned();
+        self.write(move |writer| {
+            let mut seen =
+                writer.prepare_cached("UPDATE sessions SET last_seen_at = ?2 WHERE session_id = ?1")?;
+            seen.execute(params![session_id, clock::now()])?;
+            Ok(())
+        })
+        .await
     }
 
     /// Notes that the participant agreed to the text of this hash; the first time counts.
@@ -220,16 +186,16 @@ impl Store {
     /// # Errors
     /// The database fails.
     pub async fn consent(&self, session_id: &str, consent_sha256: &str) -> Result<(), StoreError> {
-        sqlx::query(
-            "UPDATE sessions SET consent_sha256 = CASE WHEN consented_at IS NULL THEN $3 ELSE consent_sha256 END,
-             consented_at = COALESCE(consented_at, $2), last_seen_at = $2 WHERE session_id = $1",
-        )
-        .bind(session_id)
-        .bind(clock::now())
-        .bind(consent_sha256)
-        .execute(&self.writer)
-        .await?;
-        Ok(())
+        let [session_id, consent_sha256] = [session_id, consent_sha256].map(str::to_owned);
+        self.write(move |writer| {
+            let mut consent = writer.prepare_cached(
+                "UPDATE sessions SET consent_sha256 = CASE WHEN consented_at IS NULL THEN ?3 ELSE consent_sha256 END,
+                 consented_at = COALESCE(consented_at, ?2), last_seen_at = ?2 WHERE session_id = ?1",
+            )?;
+            consent.execute(params![session_id, clock::now(), consent_sha256])?;
+            Ok(())
+        })
+        .await
     }
 
     /// Indices of the trials that have an answer, ascending.
@@ -237,7 +203,8 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn answered(&self, session_id: &str) -> Result<Vec<u32>, StoreError> {
-        answered(&mut *self.reader.acquire().await?, session_id).await
+        let session_id = session_id.to_owned();
+        self.readers.read(move |connection| answered(connection, &session_id)).await
     }
 
     /// Finishes a session whose every trial is stored and gives it `code`; a session that is finished keeps its first code.
@@ -245,29 +212,8 @@ impl Store {
     /// # Errors
     /// The database fails, or has no such session.
     pub async fn complete(&self, session: &Session, code: &str) -> Result<Completed, StoreError> {
-        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
-        let answered = answered(&mut tx, &session.session_id).await?;
-        let plan = sqlx::query(
-            "SELECT more, (SELECT count(*) FROM session_trials t WHERE t.session_id = s.session_id) AS trials
-             FROM sessions s WHERE session_id = $1",
-        );
-        let plan = plan.bind(&session.session_id).fetch_one(&mut *tx).await?;
-        let (more, trials): (bool, u32) = (plan.try_get("more")?, plan.try_get("trials")?);
-        let missing: Vec<u32> = (0..trials).filter(|index| !answered.contains(index)).collect();
-        if more || !missing.is_empty() {
-            return Ok(Completed::Missing(missing));
-        }
-        let code = sqlx::query_scalar(
-            "UPDATE sessions SET completion_code = COALESCE(completion_code, $2), completed_at = COALESCE(completed_at, $3),
-             last_seen_at = $3 WHERE session_id = $1 RETURNING completion_code",
-        )
-        .bind(&session.session_id)
-        .bind(code)
-        .bind(clock::now())
-        .fetch_one(&mut *tx)
-        .await?;
-        tx.commit().await?;
-        Ok(Completed::Code(code))
+        let (session_id, code) = (session.session_id.clone(), code.to_owned());
+        self.write(move |writer| complete(writer, &session_id, &code)).await
     }
 
     /// When the first and the last answer to these versions of a study came, ISO-8601 UTC; `None` without answers.
@@ -309,49 +255,113 @@ impl Store {
     }
 }
 
-/// Indices of the trials of a session that have an answer, ascending.
-async fn answered(connection: &mut SqliteConnection, session_id: &str) -> Result<Vec<u32>, StoreError> {
-    let query = "SELECT trial_index FROM responses WHERE session_id = $1
-                 UNION SELECT trial_index FROM answers WHERE session_id = $1 ORDER BY trial_index";
-    Ok(sqlx::query_scalar(query).bind(session_id).fetch_all(connection).await?)
+fn create<E>(
+    writer: &Connection,
+    mut new: NewSession,
+    plan: impl FnOnce(u32) -> Result<PlannedSession, E>,
+) -> Result<Settled, Refused<E>> {
+    if let Some(settled) = settle(writer, &mut new)? {
+        return Ok(settled);
+    }
+    let mut held = writer.prepare_cached(
+        "SELECT slot FROM sessions WHERE study_id = ?1 AND version = ?2 AND kind = 'participant'
+             AND (completed_at IS NOT NULL OR last_seen_at > ?3)",
+    )?;
+    let held = held
+        .query_map([&new.study_id, &new.version, &clock::before_now(new.idle)], |row| row.get(0))?
+        .collect::<Result<Vec<u32>, _>>()?;
+    let slot = lowest_free_slot(held);
+    let planned = plan(slot).map_err(Refused::Caller)?;
+    let session_id = uuid::Uuid::now_v7().to_string();
+    let now = clock::now();
+    let session = Session {
+        subject_id: new.subject_id.unwrap_or_else(|| session_id.clone()),
+        session_id,
+        study_id: new.study_id,
+        version: new.version,
+        file_hash: new.file_hash,
+        token_hash: new.token_hash,
+        slot,
+        plan_seed: planned.seed,
+        more: planned.next.more,
+        kind: new.kind,
+        flags: new.flags,
+        start_key: new.start_key,
+        user_agent: new.user_agent,
+        params: new.params,
+        display: new.display,
+        created_at: now.clone(),
+        last_seen_at: now,
+        consented_at: None,
+        consent_sha256: None,
+        completed_at: None,
+        completion_code: None,
+    };
+    insert_session(writer, &session)?;
+    insert_trials(writer, &session.session_id, &planned.next.trials, &session.created_at, 0)?;
+    Ok(Settled::New(Box::new(session)))
 }
 
-pub(crate) async fn insert_session(
-    writer: &mut SqliteConnection,
-    session: &Session,
-) -> Result<(), StoreError> {
-    sqlx::query(
+fn complete(writer: &Connection, session_id: &str, code: &str) -> Result<Completed, StoreError> {
+    let answered = answered(writer, session_id)?;
+    let mut plan = writer.prepare_cached(
+        "SELECT more, (SELECT count(*) FROM session_trials t WHERE t.session_id = s.session_id)
+         FROM sessions s WHERE session_id = ?1",
+    )?;
+    let (more, trials): (bool, u32) = plan.query_row([session_id], |row| Ok((row.get(0)?, row.get(1)?)))?;
+    let missing: Vec<u32> = (0..trials).filter(|index| !answered.contains(index)).collect();
+    if more || !missing.is_empty() {
+        return Ok(Completed::Missing(missing));
+    }
+    let mut complete = writer.prepare_cached(
+        "UPDATE sessions SET completion_code = COALESCE(completion_code, ?2), completed_at = COALESCE(completed_at, ?3),
+         last_seen_at = ?3 WHERE session_id = ?1 RETURNING completion_code",
+    )?;
+    Ok(Completed::Code(complete.query_row(params![session_id, code, clock::now()], |row| row.get(0))?))
+}
+
+/// Indices of the trials of a session that have an answer, ascending.
+fn answered(connection: &Connection, session_id: &str) -> Result<Vec<u32>, StoreError> {
+    let mut query = connection.prepare_cached(
+        "SELECT trial_index FROM responses WHERE session_id = ?1
+         UNION SELECT trial_index FROM answers WHERE session_id = ?1 ORDER BY trial_index",
+    )?;
+    Ok(query.query_map([session_id], |row| row.get(0))?.collect::<Result<_, _>>()?)
+}
+
+pub(crate) fn insert_session(writer: &Connection, session: &Session) -> Result<(), StoreError> {
+    let mut insert = writer.prepare_cached(
         "INSERT INTO sessions (session_id, study_id, version, file_hash, subject_id, token_hash, slot, plan_seed, more, params, display,
          created_at, last_seen_at, consented_at, consent_sha256, completed_at, completion_code, kind, flags, start_key, user_agent)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21)",
-    )
-    .bind(&session.session_id)
-    .bind(&session.study_id)
-    .bind(&session.version)
-    .bind(&session.file_hash)
-    .bind(&session.subject_id)
-    .bind(&session.token_hash)
-    .bind(session.slot)
-    .bind(&session.plan_seed)
-    .bind(session.more)
-    .bind(session.params.to_string())
-    .bind(session.display.to_string())
-    .bind(&session.created_at)
-    .bind(&session.last_seen_at)
-    .bind(&session.consented_at)
-    .bind(&session.consent_sha256)
-    .bind(&session.completed_at)
-    .bind(&session.completion_code)
-    .bind(session.kind.as_str())
-    .bind(json!(session.flags).to_string())
-    .bind(&session.start_key)
-    .bind(&session.user_agent)
-    .execute(writer)
-    .await?;
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21)",
+    )?;
+    insert.execute(params![
+        session.session_id,
+        session.study_id,
+        session.version,
+        session.file_hash,
+        session.subject_id,
+        session.token_hash,
+        session.slot,
+        session.plan_seed,
+        session.more,
+        session.params.to_string(),
+        session.display.to_string(),
+        session.created_at,
+        session.last_seen_at,
+        session.consented_at,
+        session.consent_sha256,
+        session.completed_at,
+        session.completion_code,
+        session.kind.as_str(),
+        json!(session.flags).to_string(),
+        session.start_key,
+        session.user_agent,
+    ])?;
     Ok(())
 }
 
-pub(crate) fn read_session(row: &SqliteRow) -> Result<Session, StoreError> {
+fn read_session(row: &SqliteRow) -> Result<Session, StoreError> {
     let json = |column: &'static str| -> Result<Value, StoreError> {
         let text: String = row.try_get(column)?;
         serde_json::from_str(&text).map_err(|e| StoreError::corrupt(column, e))

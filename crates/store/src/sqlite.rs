@@ -1,37 +1,28 @@
-//! Opening the database: pragmas, pools, migrations.
+//! The database of a data folder: one connection that writes, several that read.
 
 use crate::error::StoreError;
 use crate::files::Files;
-use crate::upgrade;
-use sqlx::SqlSafeStr;
-use sqlx::migrate::{Migration, MigrationType, Migrator};
-use sqlx::sqlite::{
-    SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
-};
+use crate::layout;
+use crate::readers::Readers;
+use crate::stimuli::blocking;
+use crate::writer::{Refused, Writer};
+use rusqlite::Connection;
+use sqlx::sqlite::{SqliteConnectOptions, SqlitePool, SqlitePoolOptions};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// Applied migrations never change; a new one is a new line.
-const MIGRATIONS: [(i64, &str, &str); 5] = [
-    (1, "first", include_str!("../../../migrations/sqlite/0001_first.sql")),
-    (2, "sessions counted", include_str!("../../../migrations/sqlite/0002_sessions_counted.sql")),
-    (
-        3,
-        "versions, trials, answers",
-        include_str!("../../../migrations/sqlite/0003_versions_trials_answers.sql"),
-    ),
-    (4, "visits", include_str!("../../../migrations/sqlite/0004_visits.sql")),
-    (6, "packings", include_str!("../../../migrations/sqlite/0006_packings.sql")),
-];
 
 /// The database's name in its data folder.
 pub(crate) const DATABASE: &str = "kelir.sqlite";
 
+/// How long a lock that another process holds is waited for.
+pub(crate) const BUSY: Duration = Duration::from_secs(5);
+
 /// The database and the stimulus files of one data folder.
 #[derive(Clone, Debug)]
 pub struct Store {
-    /// One connection: writers queue here instead of failing as busy, and the chain of answers has one order.
-    pub(crate) writer: SqlitePool,
+    /// Writers queue here instead of failing as busy, and the chain of answers has one order.
+    writer: Writer,
+    pub(crate) readers: Readers,
     pub(crate) reader: SqlitePool,
     pub(crate) files: Files,
     pub(crate) folder: PathBuf,
@@ -45,27 +36,15 @@ impl Store {
     pub async fn open(folder: &Path) -> Result<Store, StoreError> {
         std::fs::create_dir_all(folder)
             .map_err(|source| StoreError::File { path: folder.to_owned(), source })?;
-        let options = SqliteConnectOptions::new()
-            .filename(folder.join(DATABASE))
-            .create_if_missing(true)
-            .journal_mode(SqliteJournalMode::Wal)
-            .synchronous(SqliteSynchronous::Full)
-            .foreign_keys(true)
-            .pragma("recursive_triggers", "on")
-            .busy_timeout(Duration::from_secs(10));
-        let writer = SqlitePoolOptions::new().max_connections(1).connect_with(options.clone()).await?;
-        let migrations = MIGRATIONS.map(|(version, name, sql)| {
-            Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
-        });
         let files = Files::open(folder.join("stimuli"))?;
-        // One transaction: what cannot be brought over stays as it was, for whichever version wrote it.
-        let mut tx = writer.begin_with("BEGIN IMMEDIATE").await?;
-        Migrator::with_migrations(migrations.into()).run(&mut *tx).await?;
-        upgrade::from_first_layout(&mut tx, &files).await?;
-        tx.commit().await?;
-        let reader =
-            SqlitePoolOptions::new().max_connections(4).connect_with(options.read_only(true)).await?;
-        Ok(Store { writer, reader, files, folder: folder.to_owned() })
+        let path = folder.join(DATABASE);
+        let (database, stimuli) = (path.clone(), files.clone());
+        blocking(move || layout::bring_up_to_date(&mut connect(&database)?, &stimuli)).await?;
+        let options = SqliteConnectOptions::new().filename(&path).busy_timeout(BUSY).read_only(true);
+        let reader = SqlitePoolOptions::new().max_connections(4).connect_with(options).await?;
+        let readers = Readers::new(path.clone());
+        let writer = Writer::start(move || connect(&path))?;
+        Ok(Store { writer, readers, reader, files, folder: folder.to_owned() })
     }
 
     /// The data folder.
@@ -73,13 +52,28 @@ impl Store {
         &self.folder
     }
 
+    /// Runs a job in a transaction; committed and synced when this returns `Ok`. A job that returns an error has written nothing.
+    pub(crate) async fn write<T: Send + 'static>(
+        &self,
+        job: impl FnOnce(&Connection) -> Result<T, StoreError> + Send + 'static,
+    ) -> Result<T, StoreError> {
+        self.write_or(|connection| job(connection).map_err(Refused::Store)).await
+    }
+
+    /// The same where the job also asks its caller, who has errors of their own.
+    pub(crate) async fn write_or<T: Send + 'static, E: From<StoreError> + Send + 'static>(
+        &self,
+        job: impl FnOnce(&Connection) -> Result<T, Refused<E>> + Send + 'static,
+    ) -> Result<T, E> {
+        self.writer.run(job).await
+    }
+
     /// Whether the database answers.
     ///
     /// # Errors
     /// It does not.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        sqlx::query("SELECT 1").execute(&self.reader).await?;
-        Ok(())
+        self.readers.read(|connection| Ok(connection.execute_batch("SELECT 1")?)).await
     }
 
     /// The writer's `synchronous` (2 is FULL) and `foreign_keys` (1 is on).
@@ -87,14 +81,31 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn pragmas(&self) -> Result<(i64, i64), StoreError> {
-        let synchronous = sqlx::query_scalar("PRAGMA synchronous").fetch_one(&self.writer).await?;
-        let foreign_keys = sqlx::query_scalar("PRAGMA foreign_keys").fetch_one(&self.writer).await?;
-        Ok((synchronous, foreign_keys))
+        let pragma =
+            |connection: &Connection, name| connection.pragma_query_value(None, name, |row| row.get(0));
+        self.write(move |connection| {
+            Ok((pragma(connection, "synchronous")?, pragma(connection, "foreign_keys")?))
+        })
+        .await
     }
 
     /// Closes every connection, after what is under way.
     pub async fn close(&self) {
         self.reader.close().await;
+        self.readers.close();
         self.writer.close().await;
     }
+}
+
+/// A connection that writes.
+fn connect(path: &Path) -> Result<Connection, StoreError> {
+    let connection = Connection::open(path)?;
+    connection.busy_timeout(BUSY)?;
+    connection.pragma_update(None, "journal_mode", "wal")?;
+    connection.pragma_update(None, "synchronous", "full")?;
+    connection.pragma_update(None, "foreign_keys", true)?;
+    connection.pragma_update(None, "recursive_triggers", true)?;
+    // More statements than the store has.
+    connection.set_prepared_statement_cache_capacity(128);
+    Ok(connection)
 }

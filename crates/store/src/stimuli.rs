@@ -5,6 +5,7 @@ use crate::error::StoreError;
 use crate::files::is_sha256;
 use crate::pixels;
 use crate::sqlite::Store;
+use rusqlite::params;
 use serde::Serialize;
 use serde_json::Value;
 use sqlx::Row;
@@ -69,23 +70,19 @@ impl Store {
             Ok((files.put(&bytes)?, pixels))
         })
         .await?;
-        let [width, height] = pixels.size;
-        sqlx::query(
-            "INSERT INTO stimuli (sha256, media_type, size_bytes, created_at, pixels_sha256, width, height)
-             VALUES ($1, $2, $3, $4, $5, $6, $7)
-             ON CONFLICT (sha256) DO UPDATE SET pixels_sha256 = excluded.pixels_sha256, width = excluded.width, height = excluded.height",
-        )
-        .bind(&sha256)
-        .bind(media_type)
-        .bind(size_bytes as i64)
-        .bind(clock::now())
-        .bind(&pixels.sha256)
-        .bind(width)
-        .bind(height)
-        .execute(&self.writer)
-        .await?;
         let (media_type, pixels_sha256) = (media_type.to_owned(), pixels.sha256);
-        Ok(StimulusInfo { sha256, media_type, size_bytes, pixels_sha256, size: pixels.size })
+        let info = StimulusInfo { sha256, media_type, size_bytes, pixels_sha256, size: pixels.size };
+        self.write(move |writer| {
+            let [width, height] = info.size;
+            writer.execute(
+                "INSERT INTO stimuli (sha256, media_type, size_bytes, created_at, pixels_sha256, width, height)
+                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)
+                 ON CONFLICT (sha256) DO UPDATE SET pixels_sha256 = excluded.pixels_sha256, width = excluded.width, height = excluded.height",
+                params![info.sha256, info.media_type, size_bytes as i64, clock::now(), info.pixels_sha256, width, height],
+            )?;
+            Ok(info)
+        })
+        .await
     }
 
     /// The bytes of this hash and their media type, checked against the hash; `None` for an unknown one.
@@ -150,18 +147,17 @@ impl Store {
     /// # Errors
     /// The database refuses, as it does a stimulus that is not stored.
     pub async fn put_render(&self, render: &Render) -> Result<(), StoreError> {
-        sqlx::query(
-            "INSERT INTO renders (job_key, sha256, provenance, created_at) VALUES ($1, $2, $3, $4)
-             ON CONFLICT (job_key) DO UPDATE SET sha256 = excluded.sha256, provenance = excluded.provenance,
-             created_at = excluded.created_at",
-        )
-        .bind(&render.job_key)
-        .bind(&render.sha256)
-        .bind(render.provenance.to_string())
-        .bind(clock::now())
-        .execute(&self.writer)
-        .await?;
-        Ok(())
+        let render = render.clone();
+        self.write(move |writer| {
+            writer.execute(
+                "INSERT INTO renders (job_key, sha256, provenance, created_at) VALUES (?1, ?2, ?3, ?4)
+                 ON CONFLICT (job_key) DO UPDATE SET sha256 = excluded.sha256, provenance = excluded.provenance,
+                 created_at = excluded.created_at",
+                params![render.job_key, render.sha256, render.provenance.to_string(), clock::now()],
+            )?;
+            Ok(())
+        })
+        .await
     }
 
     /// What a version of a study shows, by item and condition.

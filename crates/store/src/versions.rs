@@ -7,8 +7,9 @@ use crate::sqlite::Store;
 use crate::stimuli::StudyStimulus;
 use kelir_study::StudyDefinition;
 use kelir_study::versions::VersionStimulus;
+use rusqlite::{Connection, params};
 use sqlx::Row;
-use sqlx::sqlite::{SqliteConnection, SqliteRow};
+use sqlx::sqlite::SqliteRow;
 use std::collections::HashMap;
 use std::time::Duration;
 
@@ -45,8 +46,8 @@ impl Store {
     /// The database fails.
     pub async fn put_study_file(&self, study: &StudyDefinition) -> Result<String, StoreError> {
         let file_hash = study.file_hash();
-        put_file(&mut *self.writer.acquire().await?, study, &file_hash).await?;
-        Ok(file_hash)
+        let study = study.clone();
+        self.write(move |writer| put_file(writer, &study, &file_hash).map(|()| file_hash)).await
     }
 
     /// Stores the version that a study's file and these stimuli make, and that it is served now. What it shows is written once: a version that
@@ -60,11 +61,12 @@ impl Store {
         stimuli: &[StudyStimulus],
     ) -> Result<String, StoreError> {
         let file_hash = study.file_hash();
-        let mut tx = self.writer.begin_with("BEGIN IMMEDIATE").await?;
-        put_file(&mut tx, study, &file_hash).await?;
-        let version = put_version(&mut tx, study, &file_hash, stimuli, &clock::now()).await?;
-        tx.commit().await?;
-        Ok(version)
+        let (study, stimuli) = (study.clone(), stimuli.to_owned());
+        self.write(move |writer| {
+            put_file(writer, &study, &file_hash)?;
+            put_version(writer, &study, &file_hash, &stimuli, &clock::now())
+        })
+        .await
     }
 
     /// The versions of a study, the one served last first; empty for an unknown study.
@@ -146,27 +148,18 @@ impl Store {
     }
 }
 
-async fn put_file(
-    writer: &mut SqliteConnection,
-    study: &StudyDefinition,
-    file_hash: &str,
-) -> Result<(), StoreError> {
-    sqlx::query(
-        "INSERT INTO study_files (study_id, file_hash, definition, loaded_at) VALUES ($1, $2, $3, $4)
+fn put_file(writer: &Connection, study: &StudyDefinition, file_hash: &str) -> Result<(), StoreError> {
+    writer.execute(
+        "INSERT INTO study_files (study_id, file_hash, definition, loaded_at) VALUES (?1, ?2, ?3, ?4)
          ON CONFLICT (study_id, file_hash) DO UPDATE SET loaded_at = excluded.loaded_at",
-    )
-    .bind(&study.id)
-    .bind(file_hash)
-    .bind(study.to_json())
-    .bind(clock::now())
-    .execute(writer)
-    .await?;
+        params![study.id, file_hash, study.to_json(), clock::now()],
+    )?;
     Ok(())
 }
 
 /// Writes the version that a stored file and these stimuli make; of one that is known, that it was served.
-pub(crate) async fn put_version(
-    writer: &mut SqliteConnection,
+pub(crate) fn put_version(
+    writer: &Connection,
     study: &StudyDefinition,
     file_hash: &str,
     stimuli: &[StudyStimulus],
@@ -182,38 +175,24 @@ pub(crate) async fn put_version(
         })
         .collect();
     let version = study.version(&shown);
-    let known = "SELECT EXISTS (SELECT 1 FROM versions WHERE study_id = $1 AND version = $2)";
-    let known: bool =
-        sqlx::query_scalar(known).bind(&study.id).bind(&version).fetch_one(&mut *writer).await?;
-    sqlx::query(
-        "INSERT INTO versions (study_id, version, design_hash, file_hash, first_served_at, last_served_at) VALUES ($1, $2, $3, $4, $5, $5)
+    let known = "SELECT EXISTS (SELECT 1 FROM versions WHERE study_id = ?1 AND version = ?2)";
+    let known: bool = writer.query_row(known, [&study.id, &version], |row| row.get(0))?;
+    writer.execute(
+        "INSERT INTO versions (study_id, version, design_hash, file_hash, first_served_at, last_served_at) VALUES (?1, ?2, ?3, ?4, ?5, ?5)
          ON CONFLICT (study_id, version) DO UPDATE SET file_hash = excluded.file_hash,
          first_served_at = min(first_served_at, excluded.first_served_at), last_served_at = max(last_served_at, excluded.last_served_at)",
-    )
-    .bind(&study.id)
-    .bind(&version)
-    .bind(study.design_hash())
-    .bind(file_hash)
-    .bind(now)
-    .execute(&mut *writer)
-    .await?;
+        params![study.id, version, study.design_hash(), file_hash, now],
+    )?;
     if known {
         return Ok(version);
     }
-    for stimulus in stimuli {
-        sqlx::query(
-            "INSERT INTO version_stimuli (study_id, version, item_id, condition, sha256, pixels_sha256, provenance)
-             VALUES ($1, $2, $3, $4, $5, $6, $7)",
-        )
-        .bind(&study.id)
-        .bind(&version)
-        .bind(&stimulus.item)
-        .bind(&stimulus.condition)
-        .bind(&stimulus.sha256)
-        .bind(&stimulus.pixels_sha256)
-        .bind(stimulus.provenance.to_string())
-        .execute(&mut *writer)
-        .await?;
+    let mut insert = writer.prepare(
+        "INSERT INTO version_stimuli (study_id, version, item_id, condition, sha256, pixels_sha256, provenance)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+    )?;
+    for StudyStimulus { item, condition, sha256, pixels_sha256, provenance, .. } in stimuli {
+        let provenance = provenance.to_string();
+        insert.execute(params![study.id, version, item, condition, sha256, pixels_sha256, provenance])?;
     }
     Ok(version)
 }

@@ -7,6 +7,8 @@ mod definition;
 mod fields;
 mod parse;
 mod problems;
+#[cfg(test)]
+mod reference;
 
 pub mod adaptive;
 pub mod analysis;

@@ -7,6 +7,12 @@ stopped-title = The study has stopped
 stopped = Something in this page went wrong. If reloading does not help, please open the link in another browser.
 no-study-title = There is no such study
 no-study = Please check the link you were given, or ask the person who sent it to you.
+finished-title = This study has been finished
+finished = It has been finished with this link already, and can be taken once. Its code is shown in the browser where it was finished.
+begun-title = This study has been begun
+begun = It has been begun with this link already, and can be taken once. Please go on in the browser where it was begun.
+link-title = This link can't be used
+link = What the link says of you can't be stored. Please ask the person who sent it to you for another.
 moved-title = Continued in another tab
 moved = You went on with this study in another tab or window. You can close this one.
 elsewhere-title = This study is open in another tab
@@ -38,6 +44,12 @@ key-left = left image
 key-right = right image
 key-first = first
 key-second = second
+key-upper = upper image
+key-lower = lower image
+how-pair-touch = Touch the picture that you choose.
+how-pair-click = Click the picture that you choose, or press its key.
+how-interval-touch = Touch the button of the picture that you choose.
+how-interval-click = Click the button of the picture that you choose, or press its key.
 
 # Trials
 position = { $number } of { $all }
@@ -107,3 +119,9 @@ answer-again = An answer could not be stored, so its pictures are here once more
 too-old = This browser is too old for this study. Please open the link in a newer one: { $browsers }, or later.
 not-loaded = This page could not be loaded in full. Please check the connection and reload it.
 no-script = This study needs JavaScript. Please switch it on for this page, or open the link in another browser.
+
+# Trying a study
+trying-preview = Preview: nothing is stored.
+trying-pilot = Pilot: answers are stored, and left out of every analysis.
+trying-restart = Start again
+link-title = This link can't be used

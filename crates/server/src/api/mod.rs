@@ -2,6 +2,7 @@
 //! pages' TypeScript are read from these.
 
 mod auth;
+mod links;
 mod lists;
 mod problem;
 mod refusals;
@@ -11,6 +12,7 @@ mod versions;
 
 pub use auth::{SignIn, SignedIn};
 pub use kelir_study::trials::Answer;
+pub use links::{Link, NewLink, Trying, VisitKind};
 pub use lists::ListQuery;
 pub use problem::{Problem, ProblemCode, StoredAnswer};
 pub use sessions::{

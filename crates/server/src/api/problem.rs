@@ -30,6 +30,8 @@ worded! {
         Unauthorized = "unauthorized",
         /// That is not the password.
         WrongPassword = "wrong_password",
+        /// The link is signed and not good: it has ended or was changed.
+        LinkRefused = "link_refused",
         /// There is nothing of this name.
         NotFound = "not_found",
         /// The address does not take this method.
@@ -70,6 +72,7 @@ impl ProblemCode {
             | ProblemCode::InvalidParameter
             | ProblemCode::AmbiguousVersion => StatusCode::BAD_REQUEST,
             ProblemCode::Unauthorized | ProblemCode::WrongPassword => StatusCode::UNAUTHORIZED,
+            ProblemCode::LinkRefused => StatusCode::FORBIDDEN,
             ProblemCode::NotFound => StatusCode::NOT_FOUND,
             ProblemCode::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
             ProblemCode::NoConsent

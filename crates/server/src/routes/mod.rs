@@ -5,8 +5,10 @@
 mod auth;
 mod document;
 mod health;
+mod links;
 mod pages;
 mod papers;
+mod previews;
 mod sessions;
 mod stimuli;
 mod studies;
@@ -43,6 +45,12 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(sessions::put_answer, sessions::post_answer).layer(DefaultBodyLimit::max(TRIAL_LIMIT)),
         routes!(sessions::complete_session),
         routes!(stimuli::get_session_stimulus),
+        routes!(links::get_visit),
+        routes!(links::make_link),
+        routes!(previews::get_preview),
+        routes!(previews::consent_preview),
+        routes!(previews::answer_preview).layer(DefaultBodyLimit::max(TRIAL_LIMIT)),
+        routes!(previews::complete_preview),
         routes!(stimuli::get_stimulus),
         routes!(auth::sign_in, auth::get_signed_in, auth::sign_out),
         routes!(studies::list_studies),
@@ -57,6 +65,8 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(versions::get_export_xlsx),
         routes!(versions::get_pairs_csv),
         routes!(versions::get_codebook_csv),
+        routes!(versions::get_events_csv),
+        routes!(versions::get_events_codebook_csv),
         routes!(versions::get_codebook),
         routes!(papers::get_taylor_cameron),
         routes!(document::get_openapi),

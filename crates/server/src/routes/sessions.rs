@@ -1,14 +1,16 @@
 //! Taking part: a session from its beginning to its code. Conditions never leave the server.
 
 use super::studies::{StudyPath, told};
-use super::{Answered, Fresh};
+use super::{Answered, Fresh, links, previews};
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, Trial, refusals,
 };
 use crate::app::App;
 use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
+use crate::links::{Visit, is_of_link};
 use crate::making::StimulusMap;
+use crate::presenting::Whose;
 use crate::password::{random_code, random_token};
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -34,14 +36,13 @@ pub(crate) struct SessionPath {
 #[into_params(parameter_in = Path)]
 pub(crate) struct TrialPath {
     /// The session's id.
-    #[expect(dead_code, reason = "`Participant` reads it, with the token")]
-    session: String,
+    pub(super) session: String,
     /// The trial's index, in plain digits.
     #[param(value_type = u32)]
-    trial_index: String,
+    pub(super) trial_index: String,
 }
 
-refusals!(NotCreated: Unauthorized, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
+refusals!(NotCreated: Unauthorized, LinkRefused, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
 
 /// Begin a session. The answer holds its token, which is told this once.
 ///
@@ -62,8 +63,15 @@ pub(crate) async fn create_session(
     let served = loaded.ready()?;
     let token = random_token();
     let params = new.params.unwrap_or_default();
-    let kind = new.kind.unwrap_or_default();
-    if kind != SessionKind::Participant && researcher.is_none() {
+    let pairs: Vec<(String, String)> = params.clone().into_iter().collect();
+    let visit = links::visit(&app, &loaded.study.id, &pairs, researcher.is_some())?;
+    if visit == Visit::Preview {
+        let begun = crate::app::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
+        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun)?)));
+    }
+    let is_pilot = visit == Visit::Pilot;
+    let kind = if is_pilot { SessionKind::Pilot } else { new.kind.unwrap_or_default() };
+    if kind != SessionKind::Participant && !is_pilot && researcher.is_none() {
         let detail = "Sign in first: a session that is no participant's is a researcher's.";
         return Err(Problem::new(ProblemCode::Unauthorized, detail));
     }
@@ -79,12 +87,13 @@ pub(crate) async fn create_session(
         repeat: loaded.study.session.repeat,
         start_key: None,
         user_agent: user_agent(&headers),
-        params: params.into_iter().collect(),
+        params: params.into_iter().filter(|(name, _)| !is_pilot || !is_of_link(name)).collect(),
         display: new.display.unwrap_or_default().into(),
         idle: loaded.idle(),
     };
-    let plan = |slot| {
-        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&loaded.study, slot);
+    let study = loaded.study.clone();
+    let plan = move |slot| {
+        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&study, slot);
         let next = NextTrials { trials: planned(&served.stimuli, trials)?, more };
         Ok::<_, Box<Problem>>(PlannedSession { seed, next })
     };
@@ -114,7 +123,7 @@ fn user_agent(headers: &HeaderMap) -> Option<String> {
 }
 
 /// Trials with their stimuli filled in.
-fn planned(
+pub(super) fn planned(
     stimuli: &StimulusMap,
     trials: Vec<kelir_study::Trial>,
 ) -> Result<Vec<PlannedTrial>, Box<Problem>> {
@@ -191,7 +200,8 @@ pub(crate) async fn put_answer(
     let answer = checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))?.answer;
     let new = NewAnswer { trial_index: trial.trial_index, answer, payload: body.text };
     let begun = app.begun(&session).await?;
-    let next = |progress: Progress| next_of(&begun, session.slot, &progress);
+    let (deciding, slot) = (begun.clone(), session.slot);
+    let next = move |progress: Progress| next_of(&deciding, slot, &progress);
     match app.store.append_answer(&session, &new, next).await? {
         Appended::Stored | Appended::Same => {}
         Appended::Different(stored) => {
@@ -210,7 +220,7 @@ pub(crate) async fn put_answer(
         let answered = app.store.answered(&session.session_id).await?;
         let from = u32::try_from(known).unwrap_or(u32::MAX);
         let decided = app.store.trials_from(&session.session_id, from).await?;
-        trials = trials_of(&app, &session, &begun.study, &decided, &answered).await?;
+        trials = trials_of(&app, Whose::of(&session), &begun.study, &decided, &answered).await?;
     }
     let next_trial = app.store.next_trial(&session.session_id).await?;
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
@@ -233,7 +243,11 @@ pub(crate) async fn post_answer(
 }
 
 /// What follows in a session from what it was shown and answered.
-fn next_of(begun: &crate::app::Begun, slot: u32, progress: &Progress) -> Result<NextTrials, Box<Problem>> {
+pub(super) fn next_of(
+    begun: &crate::app::Begun,
+    slot: u32,
+    progress: &Progress,
+) -> Result<NextTrials, Box<Problem>> {
     let study = &begun.study;
     let chose_target = |index: u32| {
         let trial = &progress.trials.get(index as usize)?.trial;
@@ -281,7 +295,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     let study = app.begun(session).await?.study;
     let answered = app.store.answered(&session.session_id).await?;
     let planned = app.store.trials(&session.session_id).await?;
-    let trials = trials_of(app, session, &study, &planned, &answered).await?;
+    let trials = trials_of(app, Whose::of(session), &study, &planned, &answered).await?;
     let status = match (&session.completed_at, &session.consented_at) {
         (Some(_), _) => SessionStatus::Completed,
         (None, Some(_)) => SessionStatus::InProgress,
@@ -305,9 +319,9 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     })
 }
 
-async fn trials_of(
+pub(super) async fn trials_of(
     app: &App,
-    session: &Session,
+    whose: Whose<'_>,
     study: &StudyDefinition,
     planned: &[PlannedTrial],
     answered: &[u32],
@@ -322,7 +336,7 @@ async fn trials_of(
             block_index: trial.block_index,
             item_index: trial.item_index,
             kind: trial.kind,
-            shown: app.presenter.tell(&app.store, session, planned).await?,
+            shown: app.presenter.tell(&app.store, whose, planned).await?,
             settings: trial.trial.settings(),
             width,
             height,

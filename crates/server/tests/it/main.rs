@@ -5,6 +5,7 @@ mod bad_requests;
 mod client;
 mod making;
 mod openapi;
+mod persons;
 mod placeholder;
 mod presenting;
 mod research;

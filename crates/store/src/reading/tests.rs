@@ -5,6 +5,7 @@ use crate::{NewAnswer, NewSession, NextTrials, PlannedSession, PlannedTrial};
 use kelir_study::TrialPlan;
 use kelir_study::trials::Placed;
 use std::path::Path;
+use std::time::Duration;
 
 /// Three items over two conditions, in two intervals where `seed` is even.
 fn study(seed: u64) -> StudyDefinition {

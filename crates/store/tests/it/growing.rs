@@ -20,7 +20,8 @@ async fn give(store: &Store, served: &Served, session: &Session, index: u32) -> 
     let trials = store.trials(&session.session_id).await.unwrap();
     let trial = &trials[index as usize].trial;
     let new = answer_of(trial.trial.rules(), index, trial.is_first("pa") == (index < 6), 100.0);
-    let next = |progress| Ok::<_, StoreError>(served.next(session.slot, &progress));
+    let (served, slot) = (served.clone(), session.slot);
+    let next = move |progress| Ok::<_, StoreError>(served.next(slot, &progress));
     store.append_answer(session, &new, next).await.unwrap()
 }
 
@@ -95,12 +96,13 @@ async fn racing_answers_decide_each_trial_once_and_one_after_the_other() {
             let (store, served, session) = (store.clone(), served.clone(), session.clone());
             let (within, rules) = (within.clone(), trial.trial.rules());
             tokio::spawn(async move {
-                let next = |progress: kelir_store::Progress| {
+                let slot = session.slot;
+                let next = move |progress: kelir_store::Progress| {
                     assert_eq!(within.fetch_add(1, SeqCst), 0, "two decide at once");
                     assert_eq!(progress.answers.len(), index as usize + 1, "its own answer is among them");
                     std::thread::sleep(std::time::Duration::from_millis(2));
                     within.fetch_sub(1, SeqCst);
-                    Ok::<_, StoreError>(served.next(session.slot, &progress))
+                    Ok::<_, StoreError>(served.next(slot, &progress))
                 };
                 let new = answer_of(rules, index, racer % 2 == 0, f64::from(racer));
                 store.append_answer(&session, &new, next).await.unwrap()
@@ -125,7 +127,8 @@ async fn an_error_of_what_decides_stores_nothing() {
     let error = store.append_answer(&session, &answer(1, true, 1.0), fails).await.unwrap_err();
     assert!(matches!(error, StoreError::Undecodable(_)));
     // Neither does one that decides what is decided already.
-    let again = |_| Ok::<_, StoreError>(served.plan(session.slot).next);
+    let plan = served.plan(session.slot).next;
+    let again = |_| Ok::<_, StoreError>(plan);
     let error = store.append_answer(&session, &answer(1, true, 1.0), again).await.unwrap_err();
     assert!(error.to_string().contains("plans are append-only"), "{error}");
     assert!(crate::setting::dump(folder.path()).await == before);

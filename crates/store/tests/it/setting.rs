@@ -76,6 +76,7 @@ pub fn png(shade: u8, compression: CompressionType) -> Vec<u8> {
 }
 
 /// A study that is served.
+#[derive(Clone)]
 pub struct Served {
     pub study: StudyDefinition,
     pub version: String,
@@ -162,7 +163,9 @@ pub async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
         display: json!({}),
         idle,
     };
-    store.create_session(new, |slot| Ok::<_, StoreError>(served.plan(slot))).await.unwrap().session().unwrap()
+    let served = served.clone();
+    let begun = store.create_session(new, move |slot| Ok::<_, StoreError>(served.plan(slot))).await;
+    begun.unwrap().session().unwrap()
 }
 
 /// An answer as a page sends it to a kind of trial.
