@@ -16,7 +16,9 @@ const KEPT: &str = "private, max-age=31536000, immutable";
 /// The answer to who has them already; it needs no bytes.
 pub(crate) fn unchanged(headers: &HeaderMap, etag: &str) -> Option<Response> {
     let known = headers.get(header::IF_NONE_MATCH)?.to_str().ok()?;
-    let same = known.split(',').any(|tag| matches!(tag.trim().trim_start_matches("W/"), tag if tag == etag || tag == "*"));
+    let same = known
+        .split(',')
+        .any(|tag| matches!(tag.trim().trim_start_matches("W/"), tag if tag == etag || tag == "*"));
     same.then(|| (StatusCode::NOT_MODIFIED, kept(etag)).into_response())
 }
 
@@ -64,7 +66,9 @@ fn wanted(headers: &HeaderMap, etag: &str, length: usize) -> Wanted {
     if text(header::IF_RANGE).is_some_and(|tag| tag != etag) {
         return Wanted::All;
     }
-    let Some(range) = text(header::RANGE).and_then(|range| range.strip_prefix("bytes=")) else { return Wanted::All };
+    let Some(range) = text(header::RANGE).and_then(|range| range.strip_prefix("bytes=")) else {
+        return Wanted::All;
+    };
     let Some((first, last)) = range.split_once('-') else { return Wanted::All };
     let range = match (first.parse::<usize>(), last.parse::<usize>()) {
         (Ok(first), Ok(last)) if first <= last => first..last.saturating_add(1).min(length),

@@ -5,8 +5,8 @@
 
 pub mod api;
 mod app;
-mod content;
 mod check;
+mod content;
 mod error;
 mod events;
 mod export;

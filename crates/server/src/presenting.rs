@@ -112,7 +112,11 @@ impl Presenter {
     }
 
     /// Its bytes, in parts.
-    pub(crate) async fn bytes(&self, store: &Store, presented: &Presented) -> Result<Vec<Bytes>, Box<Problem>> {
+    pub(crate) async fn bytes(
+        &self,
+        store: &Store,
+        presented: &Presented,
+    ) -> Result<Vec<Bytes>, Box<Problem>> {
         let common = self.filled(store, &presented.stimulus, presented.length).await?;
         Ok(vec![common, Bytes::copy_from_slice(&presented.tail)])
     }
@@ -134,7 +138,10 @@ impl Presenter {
         }
         let made = store.packing(stimulus).await?;
         let made = made.ok_or_else(|| Problem::internal(format!("stimulus {stimulus} is not stored")))?;
-        self.packings.write().unwrap_or_else(PoisonError::into_inner).insert(stimulus.to_owned(), made.clone());
+        self.packings
+            .write()
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert(stimulus.to_owned(), made.clone());
         Ok(made)
     }
 
@@ -153,7 +160,8 @@ impl Presenter {
             let again = self.packing(store, stimulus).await?;
             bytes = store.file(&again.packed_sha256).await?.ok_or_else(damaged)?;
         }
-        let filled = usize::try_from(length).map_err(Problem::internal)?.checked_sub(TAIL).ok_or_else(damaged)?;
+        let filled =
+            usize::try_from(length).map_err(Problem::internal)?.checked_sub(TAIL).ok_or_else(damaged)?;
         bytes.resize(filled, 0);
         let bytes = Bytes::from(bytes);
         self.keep(name, bytes.clone());

@@ -89,7 +89,8 @@ fn step(before: &RgbaImage, after: &RgbaImage) -> Result<RgbaImage, String> {
     }
     let (mut brighter, mut darker) = (Vec::new(), Vec::new());
     for (a, b) in before.pixels().zip(after.pixels()) {
-        let [added, taken] = [[b, a], [a, b]].map(|[more, less]| channels(|c| more.0[c].saturating_sub(less.0[c])));
+        let [added, taken] =
+            [[b, a], [a, b]].map(|[more, less]| channels(|c| more.0[c].saturating_sub(less.0[c])));
         brighter.extend(added);
         darker.extend(taken);
     }
@@ -109,7 +110,8 @@ fn stepped(before: &RgbaImage, step: &RgbaImage) -> Result<RgbaImage, String> {
         return Err("has a step of another size".to_owned());
     }
     Ok(RgbaImage::from_fn(width, height, |x, y| {
-        let [now, added, taken] = [before.get_pixel(x, y), step.get_pixel(x, y), step.get_pixel(x, y + height)];
+        let [now, added, taken] =
+            [before.get_pixel(x, y), step.get_pixel(x, y), step.get_pixel(x, y + height)];
         Rgba(channels(|c| now.0[c].saturating_add(added.0[c]).abs_diff(taken.0[c])))
     }))
 }
@@ -159,7 +161,8 @@ fn joined(
 /// Why it cannot be read.
 pub(crate) fn unpacked(bytes: &[u8]) -> Result<Pixels, String> {
     let end = bytes.iter().position(|byte| *byte == b'\n').ok_or("has no head")?;
-    let head: Head = serde_json::from_slice(&bytes[..end]).map_err(|error| format!("has a head that {error}"))?;
+    let head: Head =
+        serde_json::from_slice(&bytes[..end]).map_err(|error| format!("has a head that {error}"))?;
     if head.format != FORMAT {
         return Err(format!("has format {}; known is {FORMAT}", head.format));
     }

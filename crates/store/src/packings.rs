@@ -22,7 +22,10 @@ impl Store {
     /// # Errors
     /// [`StoreError::Undecodable`] where the packing would not show the very pixels; the stimulus cannot be read, or its packing not be kept.
     pub async fn packing(&self, sha256: &str) -> Result<Option<Packing>, StoreError> {
-        let (name, found) = (sha256.to_owned(), "SELECT packed_sha256, size_bytes FROM packings WHERE sha256 = ?1 AND packer = ?2");
+        let (name, found) = (
+            sha256.to_owned(),
+            "SELECT packed_sha256, size_bytes FROM packings WHERE sha256 = ?1 AND packer = ?2",
+        );
         let known = self.readers.read(move |reader| {
             let packing = |row: &Row<'_>| {
                 Ok(Packing { packed_sha256: row.get(0)?, size_bytes: row.get::<_, i64>(1)? as u64 })

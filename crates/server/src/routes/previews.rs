@@ -70,7 +70,8 @@ pub(crate) async fn get_preview(
     Token(token): Token,
     Parameters(PreviewPath { session }): Parameters<PreviewPath>,
 ) -> Answered<SessionState> {
-    let state = app.previews.with(&session, &token, |preview| state_of(&session, preview)).ok_or_else(gone)?;
+    let state =
+        app.previews.with(&session, &token, |preview| state_of(&session, preview)).ok_or_else(gone)?;
     Ok(Fresh(state.told(&app, &token).await?))
 }
 

@@ -10,8 +10,8 @@ use crate::app::App;
 use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
 use crate::links::{Visit, is_of_link};
 use crate::making::StimulusMap;
-use crate::presenting::Whose;
 use crate::password::{random_code, random_token};
+use crate::presenting::Whose;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{

@@ -65,7 +65,10 @@ async fn stimuli_are_given_whole_in_part_and_not_again() {
     let [url, _] = shown(&state["trials"][2], "left");
     let whole = client.get(url).await;
     let length = whole.bytes.len();
-    assert_eq!((whole.header("content-length"), whole.header("accept-ranges")), (&*length.to_string(), "bytes"));
+    assert_eq!(
+        (whole.header("content-length"), whole.header("accept-ranges")),
+        (&*length.to_string(), "bytes")
+    );
     let etag = whole.header("etag");
     let same = asked(&client, "GET", url, &[("if-none-match", etag)]).await;
     assert_eq!((same.status, same.bytes.len()), (StatusCode::NOT_MODIFIED, 0));
@@ -133,7 +136,10 @@ async fn with_photographs() -> Client {
     }
     let files = "[conditions.photographed]\nfiles = { one = \"photos/one.jpg\", two = \"photos/two.jpg\" }";
     let study = STUDY
-        .replace("[conditions.mc]\ntechnique = \"mc\"", &format!("[conditions.mc]\ntechnique = \"mc\"\n{files}"))
+        .replace(
+            "[conditions.mc]\ntechnique = \"mc\"",
+            &format!("[conditions.mc]\ntechnique = \"mc\"\n{files}"),
+        )
         .replace("id = \"stills\"", "id = \"photographs\"")
         .replacen("conditions = [\"pa\", \"mc\"]", "conditions = [\"pa\", \"photographed\"]", 1)
         .replace("id = \"a\"", "id = \"one\"")
