@@ -228,7 +228,7 @@ async fn the_screened_are_left_out_named_and_shown_apart() {
     for (rts, choices) in [([900.0, 299.0, 900.0], 3), ([900.0, 900.0, 900.0], 2)] {
         let (path, token, _) = client.join(json!({})).await;
         for (trial, rt) in rts.iter().enumerate().take(choices) {
-            let mut body = crate::client::body_of("left");
+            let mut body = body_of("left");
             body["rt"] = json!(rt);
             let answer = client.call("PUT", &format!("{path}/trials/{trial}"), &token, &body).await;
             assert_eq!(answer.status, StatusCode::OK);
