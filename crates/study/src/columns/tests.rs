@@ -67,8 +67,6 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
         version: "v".to_owned(),
         design_hash: "d".to_owned(),
         status: SessionStatus::InProgress,
-        judged: 1,
-        reject_reason: None,
         percent_complete: 100.0 / 3.0,
         slot: 0,
         plan_seed: "0".to_owned(),
