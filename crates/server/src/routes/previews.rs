@@ -192,6 +192,7 @@ fn state_of(id: &str, preview: &Preview) -> Untold {
         study: told(study),
         status,
         named: false,
+        language: study.language.clone(),
         consented: preview.consented,
         more: preview.more,
         most_trials: if preview.more { study.most_trials() } else { preview.trials.len() },
