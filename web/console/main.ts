@@ -109,7 +109,7 @@ async function showStudies(forward: boolean): Promise<void> {
   document.title = "Studies · kelir";
   const row = (study: StudySummary) => {
     const { completed, in_progress, started } = study.participants;
-    return h("tr", {}, h("th", { scope: "row" }, link(address(study), study.title), ...[statusText(study)].map((text) => text !== null && h("span", { class: "note" }, text))), ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))));
+    return h("tr", {}, h("th", { scope: "row" }, link(address(study), study.title), h("span", { class: "note" }, study.id), ...[statusText(study)].map((text) => text !== null && h("span", { class: "note" }, text))), ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))));
   };
   const table = h(
     "table",

@@ -67,7 +67,7 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
 
   const draw = ({ summary, versions, selection, results }: Seen) => {
     const title = results?.title ?? summary?.title ?? id;
-    document.title = `${title} · kelir`;
+    document.title = `${title} (${id}) · kelir`;
     const status = summary === undefined ? null : statusText(summary);
     section("head", [title, results?.version, results?.other_versions], () => head(id, title, results));
     section("status", [status, results?.pooled, results?.different_stimuli], () => [...(status === null ? [] : [h("p", { class: "banner", role: "status" }, status)]), ...(results === null ? [] : pooledBanner(results, versions))]);

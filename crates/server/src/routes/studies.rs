@@ -43,6 +43,8 @@ pub(super) fn told(study: &StudyDefinition) -> Study {
         surround: study.surround,
         size: study.size,
         texts: study.texts.clone(),
+        language: study.language.clone(),
+        translations: study.translations.clone(),
         estimated_minutes: study.estimated_minutes,
         response: study.response_rules(),
         per_visit: study.session.per_visit,

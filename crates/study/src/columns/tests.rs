@@ -70,6 +70,8 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
         percent_complete: 100.0 / 3.0,
         slot: 0,
         plan_seed: "0".to_owned(),
+        judged: 1,
+        reject_reason: None,
     };
     let rows = Rows::default();
     for trial in TrialPlan::for_slot(&study, 0).trials {
@@ -157,11 +159,13 @@ fn each_event_is_a_row_that_its_codebook_explains_and_pages_of_before_sent_none(
         assert_eq!((cell(row, "subject_id"), cell(row, "event_index")), ("p1", row.to_string().as_str()));
         assert_eq!(cell(row, "trial_index"), trial.trial_index.to_string());
     }
-    assert_eq!(["event", "time_ms", "reason", "input", "choice"].map(|name| cell(0, name)), [
-        "ignored", "-120.5", "answered", "pen", "left"
-    ]);
-    assert_eq!(["viewport_width", "viewport_height", "scale", "arrangement"].map(|name| cell(1, name)), [
-        "390", "844", "0.5", "stack"
-    ]);
+    assert_eq!(
+        ["event", "time_ms", "reason", "input", "choice"].map(|name| cell(0, name)),
+        ["ignored", "-120.5", "answered", "pen", "left"]
+    );
+    assert_eq!(
+        ["viewport_width", "viewport_height", "scale", "arrangement"].map(|name| cell(1, name)),
+        ["390", "844", "0.5", "stack"]
+    );
     assert_eq!((cell(2, "event"), cell(2, "time_ms")), ("blur", ""), "what breaks its rule is empty");
 }
