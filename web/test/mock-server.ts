@@ -181,7 +181,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     if (path.startsWith("/stimuli/")) {
       const stimulus = stuff.bytes.get(path.slice(9));
       if (stimulus === undefined) return json(problem(404, "not_found", "No such stimulus."));
-      return send(200, stimulus.type, stimulus.data, { "cache-control": "public, max-age=31536000, immutable" });
+      return send(200, "application/vnd.kelir.stimulus", stimulus.data, { "cache-control": "public, max-age=31536000, immutable" });
     }
     const page = path.startsWith("/study/") ? "participant.html" : path.startsWith("/console") ? "console.html" : null;
     try {

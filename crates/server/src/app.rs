@@ -5,6 +5,7 @@ use crate::library::Library;
 use crate::limiter::Limiter;
 use crate::links::Links;
 use crate::making::{Maker, Making, StimulusMap};
+use crate::presenting::Presenter;
 use crate::previews::Previews;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
 use kelir_store::{Session, Store, StoreError, StoredAnswers};
@@ -21,6 +22,7 @@ pub(crate) struct App {
     pub(crate) maker: Arc<dyn Maker>,
     pub(crate) studies: BTreeMap<String, LoadedStudy>,
     pub(crate) limiter: Limiter,
+    pub(crate) presenter: Presenter,
     /// argon2 takes 19 MiB and a core for each password it judges.
     pub(crate) judging: Semaphore,
     /// A report resamples participants thousands of times.
@@ -86,6 +88,7 @@ impl App {
             maker,
             studies: studies.into_iter().map(|study| (study.id.clone(), loaded(study))).collect(),
             limiter: Limiter::default(),
+            presenter: Presenter::default(),
             judging: Semaphore::new(2),
             reporting: Semaphore::new(1),
             secure_cookies,

@@ -6,6 +6,7 @@
 pub mod api;
 mod app;
 mod check;
+mod content;
 mod error;
 mod events;
 mod export;
@@ -18,6 +19,7 @@ mod making;
 mod participants;
 mod password;
 mod picture;
+mod presenting;
 mod previews;
 mod render;
 pub mod results;

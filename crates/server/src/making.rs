@@ -176,6 +176,12 @@ pub(crate) async fn make(
                 }
             }
         };
+        // What browsers get is packed beforehand, so that no participant waits for it.
+        progress(event(1.0, "packing"));
+        match store.packing(&info.sha256).await {
+            Err(error @ StoreError::Undecodable(_)) => return Err(failed(error.to_string())),
+            packed => packed?,
+        };
         made.push(StudyStimulus {
             item: task.pair.id.clone(),
             condition: task.name.to_owned(),

@@ -68,7 +68,7 @@ refresh-unknown = لا يبيّن هذا المتصفح عدد مرات تحدي
 refresh-missed = تعرض هذه الدراسة شيئًا لمدة { $ms } ملّي ثانية، وهذه الشاشة لا تتحدث إلا كل { NUMBER($period_ms, minimumFractionDigits: 1, maximumFractionDigits: 1) } ملّي ثانية.
 
 # الانتظار
-pictures-coming = الصور التالية في طريقها إليك؛ يُرجى الانتظار لحظة.
+pictures-coming = الصور في طريقها إليك: وصل { $here } من { $of } ({ NUMBER($mb, minimumFractionDigits: 1, maximumFractionDigits: 1) } ميغابايت).
 pictures-slow = يتأخر وصول الصور. لم يضِع شيء، وستتابع الصفحة من تلقاء نفسها.
 picture-missing = تذكر خطة هذه الدراسة صورة غير موجودة فيها.
 picture-refused = لا يعطي الخادم إحدى الصور (الحالة { $status }).

@@ -66,7 +66,7 @@ refresh-unknown = Dieser Browser gibt nicht an, wie oft sein Bildschirm neu geze
 refresh-missed = Diese Studie zeigt etwas { $ms } ms lang, und dieser Bildschirm wird nur alle { NUMBER($period_ms, minimumFractionDigits: 1, maximumFractionDigits: 1) } ms neu gezeichnet.
 
 # Warten
-pictures-coming = Die nächsten Bilder sind unterwegs; bitte warten Sie einen Moment.
+pictures-coming = Die Bilder sind unterwegs: { $here } von { $of } sind da ({ NUMBER($mb, minimumFractionDigits: 1, maximumFractionDigits: 1) } MB).
 pictures-slow = Die Bilder brauchen länger. Es geht nichts verloren; es geht von selbst weiter.
 picture-missing = Im Plan dieser Studie steht ein Bild, das sie nicht hat.
 picture-refused = Der Server gibt ein Bild nicht heraus (Status { $status }).

@@ -66,7 +66,7 @@ refresh-unknown = This browser does not tell how often its display redraws, and 
 refresh-missed = This study shows something for { $ms } ms, and this display redraws only every { NUMBER($period_ms, minimumFractionDigits: 1, maximumFractionDigits: 1) } ms.
 
 # Waiting
-pictures-coming = The next pictures are on their way; please wait a moment.
+pictures-coming = The pictures are on their way: { $here } of { $of } are here ({ NUMBER($mb, minimumFractionDigits: 1, maximumFractionDigits: 1) } MB).
 pictures-slow = The pictures take longer to arrive. Nothing is lost; it goes on by itself.
 picture-missing = The plan of this study names a picture that it does not have.
 picture-refused = The server does not give out a picture (status { $status }).

@@ -52,12 +52,13 @@ worded! {
     }
 }
 
-/// The bytes of one stimulus: what they hash to and where they are.
+/// The bytes of one stimulus as this session gets them: what they hash to and where they are. Other sessions get other bytes and
+/// addresses for the same picture.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct StimulusRef {
     /// SHA-256 of the bytes.
     pub sha256: String,
-    /// Their address on this server.
+    /// Their address on this server; who knows it may have them.
     pub url: String,
 }
 

@@ -44,6 +44,7 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(sessions::give_consent),
         routes!(sessions::put_answer, sessions::post_answer).layer(DefaultBodyLimit::max(TRIAL_LIMIT)),
         routes!(sessions::complete_session),
+        routes!(stimuli::get_session_stimulus),
         routes!(links::get_visit),
         routes!(links::make_link),
         routes!(previews::get_preview),
@@ -83,7 +84,9 @@ fn documented() -> OpenApiRouter<Arc<App>> {
 
 pub(crate) fn router(app: Arc<App>) -> Router {
     // Pictures are compressed as they are; the default predicate leaves them alone, octets too.
-    let compressible = DefaultPredicate::new().and(NotForContentType::const_new("application/octet-stream"));
+    let compressible = DefaultPredicate::new()
+        .and(NotForContentType::const_new("application/octet-stream"))
+        .and(NotForContentType::const_new(kelir_store::PACKED));
     let (documented, _) = documented().split_for_parts();
     documented
         // What pages loaded before an update still ask for.

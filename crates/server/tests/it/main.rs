@@ -7,6 +7,7 @@ mod making;
 mod openapi;
 mod persons;
 mod placeholder;
+mod presenting;
 mod research;
 mod taking_part;
 mod versions;

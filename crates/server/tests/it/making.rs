@@ -41,11 +41,12 @@ async fn nothing_is_drawn_twice_and_damage_is_drawn_again() {
     let hash = again.store().study_versions("shadow-puppets").await.unwrap()[0].version.clone();
     let still = again.store().version_stimuli("shadow-puppets", &hash).await.unwrap()[0].sha256.clone();
     std::fs::write(client.folder.path().join("stimuli").join(&still[..2]).join(&still), b"rubbish").unwrap();
-    let text = client.get(&format!("/stimuli/{still}")).await;
+    let cookie = client.sign_in().await;
+    let text = client.research(&cookie, &format!("/stimuli/{still}")).await;
     assert_eq!(text.status.as_u16(), 500, "damaged bytes are never shown");
     again.make_stimuli(&|_| {}).await.unwrap();
     assert_eq!(drawn(), 7);
-    assert_eq!(client.get(&format!("/stimuli/{still}")).await.status.as_u16(), 200);
+    assert_eq!(client.research(&cookie, &format!("/stimuli/{still}")).await.status.as_u16(), 200);
 
     // Negative control: another size is another stimulus.
     let study = crate::client::STUDY.replace("[64, 36]", "[80, 45]");

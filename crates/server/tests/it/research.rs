@@ -1,4 +1,4 @@
-use crate::client::{Client, PASSWORD, config};
+use crate::client::{Client, PASSWORD, body_of, config};
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
 use kelir_server::{Server, VersionRef, With};
@@ -138,6 +138,38 @@ async fn the_export_has_one_row_a_trial_and_a_codebook_for_every_column() {
         assert_eq!((cell("rt"), cell("time_elapsed"), cell("viewport_height")), ("812.5", "5000", "800"));
         assert_eq!((cell("status"), cell("percent_complete")), ("completed", "100"));
     }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_table_of_events_has_one_row_an_event_and_a_codebook_for_every_column() {
+    let client = Client::ready().await;
+    let (path, token, _) = client.join(json!({ "PROLIFIC_PID": "5f0a" })).await;
+    let mut body = body_of("left");
+    body["events"] = json!([
+        { "event": "blur", "time_ms": 12.5 },
+        { "event": "ignored", "time_ms": -180, "reason": "double", "input": "mouse", "choice": "left" },
+    ]);
+    let first = client.call("PUT", &format!("{path}/trials/0"), &token, &body).await;
+    assert_eq!(first.status, StatusCode::OK, "{}", first.text());
+    // A page of before has no log.
+    assert_eq!(client.choose(&path, &token, 1, "right").await.status, StatusCode::OK);
+    let cookie = client.sign_in().await;
+    let table = |name: &str| format!("/api/v1/studies/shadow-puppets/versions/current/{name}");
+    let answer = client.research(&cookie, &table("events.csv")).await;
+    assert_eq!(answer.header("content-type"), "text/csv; charset=utf-8");
+    let text = answer.text();
+    let lines: Vec<Vec<&str>> = text.trim_end().split("\r\n").map(|line| line.split(',').collect()).collect();
+    let codebook = client.research(&cookie, &table("events-codebook.csv")).await.text();
+    let described: Vec<&str> =
+        codebook.trim_end().split("\r\n").skip(1).map(|l| l.split(',').next().unwrap()).collect();
+    assert_eq!(lines[0], described);
+    let cell = |row: usize, name: &str| lines[row][described.iter().position(|d| *d == name).unwrap()];
+    assert_eq!(lines.len(), 3);
+    let cells = |row| {
+        ["subject_id", "trial_index", "event_index", "event", "time_ms", "reason"].map(|name| cell(row, name))
+    };
+    assert_eq!(cells(1), ["5f0a", "0", "0", "blur", "12.5", ""]);
+    assert_eq!(cells(2), ["5f0a", "0", "1", "ignored", "-180", "double"]);
 }
 
 #[tokio::test(flavor = "multi_thread")]
