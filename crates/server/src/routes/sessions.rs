@@ -67,7 +67,8 @@ pub(crate) async fn create_session(
     let visit = links::visit(&app, &loaded.study.id, &pairs, researcher.is_some())?;
     if visit == Visit::Preview {
         let begun = crate::app::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
-        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun).await?)));
+        let language = new.display.as_ref().and_then(|display| display.get("language")?.as_str());
+        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun, language).await?)));
     }
     let is_pilot = visit == Visit::Pilot;
     let kind = if is_pilot { SessionKind::Pilot } else { new.kind.unwrap_or_default() };

@@ -84,7 +84,7 @@ async fn as_rows_say(store: &Store, study: &StudyDefinition, versions: &[String]
             session_id: &row.session_id,
             trial_index: row.trial_index,
             observation,
-            received_us: crate::clock::micros(&row.received_at),
+            received_us: micros(&row.received_at),
         });
     }
     assert_eq!(answers.len(), rows.len());
