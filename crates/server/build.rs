@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// What the pages are made of, in `web/`. `node_modules` is not watched: the lock file says what is in it.
-const SOURCES: [&str; 6] =
-    ["build.mjs", "console", "package-lock.json", "package.json", "participant", "shared"];
+const SOURCES: [&str; 7] =
+    ["browsers.json", "build.mjs", "console", "package-lock.json", "package.json", "participant", "shared"];
 
 /// The two shells that every bundle has.
 const SHELLS: [&str; 2] = ["participant.html", "console.html"];

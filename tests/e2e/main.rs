@@ -2,11 +2,14 @@
 #![allow(clippy::unwrap_used)]
 
 mod adaptive;
+mod check;
 mod cli;
 mod doors;
 mod film;
+mod front;
 mod invariants;
 mod kinds;
 mod report;
 mod survey;
+mod trying;
 mod versions;

@@ -50,6 +50,8 @@ fn answer(server: &Server) {
             assert_eq!(server.call("POST", &format!("{path}/completion"), token, &Value::Null).0, 200);
         }
     }
+    // They took the time that they claim: the study leaves out who can't have.
+    sql(&database, "UPDATE sessions SET consented_at = '2026-11-22T10:00:00.000Z'");
 }
 
 /// Every number behind the page's, in order.
@@ -95,8 +97,8 @@ fn a_report_says_what_the_answers_say_in_every_form() {
 
     // Before there are answers: a report that says so, with no figure to draw.
     let empty = write("empty.html");
-    assert!(empty.contains("Nothing yet: nobody has answered.") && !empty.contains("<svg"));
-    assert!(stats("text").contains("Nothing yet"));
+    assert!(empty.contains("0 began.") && !empty.contains("<svg"));
+    assert!(stats("text").contains("0 began."));
 
     let server = Server::start(data.path(), true);
     answer(&server);
@@ -162,6 +164,15 @@ fn a_report_says_what_the_answers_say_in_every_form() {
             "{figure}"
         );
     }
+
+    let data = data.path().to_str().unwrap();
+    let people = kelir_ok(&["export", STUDY, "--data", data, "--table", "participants"]);
+    assert_eq!(people.lines().count(), 1 + 33);
+    let sheet = at("answers.xlsx");
+    kelir_ok(&["export", STUDY, "--data", data, "-o", sheet.to_str().unwrap()]);
+    assert!(std::fs::read(&sheet).unwrap().starts_with(b"PK"));
+    let one = kelir(&["export", STUDY, "--data", data, "--table", "pairs", "-o", sheet.to_str().unwrap()]);
+    assert_eq!(one.status.code(), Some(2), "a spreadsheet holds every table");
 
     looks_right(&at("report.html"));
 }

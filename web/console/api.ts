@@ -24,8 +24,14 @@ const v1 = "/api/v1";
 export const login = (password: string) => request<void>(`${v1}/auth/session`, { method: "POST", body: { password } satisfies Schemas["SignIn"] });
 export const logout = () => request<void>(`${v1}/auth/session`, { method: "DELETE" });
 export const fetchPaper = () => request<Paper>(`${v1}/papers/taylor-cameron`);
+/** What is damaged of all that the server stores. */
+export const fetchIntegrity = () => request<Schemas["IntegrityReport"]>(`${v1}/integrity`);
 export const fetchStudies = () => all<StudySummary>(`${v1}/studies`);
 export const fetchVersions = (study: string) => all<StudyVersion>(`${v1}/studies/${encodeURIComponent(study)}/versions`);
+
+/** A link by which who has it tries a study. */
+export const makeLink = (study: string, visit: Schemas["Trying"]) =>
+  request<Schemas["Link"]>(`${v1}/studies/${encodeURIComponent(study)}/links`, { method: "POST", body: { visit } satisfies Schemas["NewLink"] });
 
 /** Whose answers are meant: one version of a study, and the versions whose answers are pooled with its. */
 export interface Selection {
@@ -36,7 +42,7 @@ export interface Selection {
   pooled: readonly string[];
 }
 
-type Ending = "results" | "report" | "report.html" | "report.md" | "responses.csv" | "pairs.csv" | "codebook.csv";
+type Ending = "results" | "report" | "report.html" | "report.md" | "responses.csv" | "pairs.csv" | "codebook.csv" | "participants.csv" | "participants_codebook.csv" | "events.csv" | "events_codebook.csv" | "export.xlsx";
 
 /** Where something of a selection is. */
 export function addressOf({ study, version, pooled }: Selection, ending: Ending): string {

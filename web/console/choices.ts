@@ -5,11 +5,11 @@ import type { Block, Results } from "./api.ts";
 import { copyButton, number, tableText } from "./copy.ts";
 import { choiceDistribution } from "./plots.ts";
 
-export function choices({ blocks, scale }: Pick<Results, "blocks" | "scale">): Node[] {
+export function choices({ blocks, scale, standing }: Pick<Results, "blocks" | "scale" | "standing">): Node[] {
   const table = resultsTable(blocks);
   return [
     h("h2", {}, "Choices"),
-    h("div", { class: "plots" }, ...blocks.map(blockFigure)),
+    h("div", { class: "plots" }, ...blocks.map((block) => blockFigure(block, standing.summary))),
     h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of choices" }, table),
     h("p", { class: "quiet" }, "Number of choices of the target per participant, over those who answered every pair of the block. Two-tailed one-sample t-test against chance, half the pairs. ", copyButton("Copy the table", () => tableText(table), { class: "link" })),
     ...(scale ? [positions(scale)] : []),
@@ -23,12 +23,13 @@ function positions(scale: NonNullable<Results["scale"]>): HTMLElement {
   return h("p", { "data-testid": "scale" }, "All conditions on one scale, in JOD: ", ...shown, ".");
 }
 
-function blockFigure(block: Block): HTMLElement {
+/** A block nobody of those judged has answered has no plot; why, the counts say. */
+function blockFigure(block: Block, summary: string): HTMLElement {
   const what = `${block.conditions.join(" against ")}, ${count(block.items, "pair")} of ${block.kind === "still" ? "stills" : "animations"}, ${block.layout}`;
   const plot =
     block.n > 0
       ? choiceDistribution(block)
-      : h("p", { class: "empty" }, block.incomplete > 0 ? "Nobody has answered every pair of this block yet." : "No answers yet. The plot appears with the first participant who answers this block.");
+      : h("p", { class: "empty" }, block.incomplete > 0 ? `0 of those judged answered every pair of this block, ${block.incomplete} answered some.` : summary);
   return h("figure", { class: "block" }, h("figcaption", {}, h("strong", {}, block.title), h("span", { class: "quiet" }, what)), plot);
 }
 

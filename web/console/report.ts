@@ -131,17 +131,9 @@ function scale({ scale: found, scale_note }: Report): Node[] {
   return [heading, strips(rows, axis, `Just-objectionable differences; more is chosen more often, and 1 JOD apart is chosen by 75%. Lines: ${percent(found.level)} intervals from ${count(found.replicates, "resample")} of ${count(found.observers, "participant")}. Overlap of intervals is no test.`)];
 }
 
-/** A reason of the study file's rules, in words. */
-function reason(why: Report["excluded"][number]["reasons"][number]): string {
-  if (why.reason === "too_fast") return `${count(why.trials, "answer")} too fast, ${why.allowed} allowed`;
-  if (why.reason === "failed_catch_trials") return `${count(why.trials, "catch trial")} failed, ${why.allowed} allowed`;
-  if (why.reason === "straight_lining") return `the same side in all ${count(why.trials, "trial")}`;
-  return `${why.answered} of ${count(why.trials, "trial")} answered`;
-}
-
 function exclusions({ excluded }: Report): Node[] {
   if (excluded.length === 0) return [];
-  const items = excluded.map(({ session_id, reasons }) => h("li", {}, number(session_id.slice(0, 13), session_id), `: ${reasons.map(reason).join("; ")}`));
+  const items = excluded.map(({ session_id, why }) => h("li", {}, number(session_id.slice(0, 13), session_id), `: ${why}`));
   return [h("h3", {}, `${count(excluded.length, "participant")} left out by the study's rules`), h("ul", {}, ...items)];
 }
 

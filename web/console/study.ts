@@ -2,7 +2,7 @@
 import { h } from "../shared/dom.ts";
 import { clockTime, count } from "../shared/format.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
-import { addressOf, fetchPaper, fetchReport, fetchResults, fetchStudies, fetchVersions, type Participants, type Results, type Selection, type StudySummary, type StudyVersion } from "./api.ts";
+import { addressOf, fetchPaper, fetchReport, fetchResults, fetchStudies, fetchVersions, makeLink, type Results, type Selection, type StudySummary, type StudyVersion } from "./api.ts";
 import { choices } from "./choices.ts";
 import { copyButton, number } from "./copy.ts";
 import { gallery } from "./gallery.ts";
@@ -67,7 +67,7 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
 
   const draw = ({ summary, versions, selection, results }: Seen) => {
     const title = results?.title ?? summary?.title ?? id;
-    document.title = `${title} · kelir`;
+    document.title = `${title} (${id}) · kelir`;
     const status = summary === undefined ? null : statusText(summary);
     section("head", [title, results?.version, results?.other_versions], () => head(id, title, results));
     section("status", [status, results?.pooled, results?.different_stimuli], () => [...(status === null ? [] : [h("p", { class: "banner", role: "status" }, status)]), ...(results === null ? [] : pooledBanner(results, versions))]);
@@ -76,10 +76,10 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
       return versions.length < 2 ? [] : [h("h2", {}, "Versions"), list.element];
     });
     list?.recount(versions);
-    section("participants", results?.participants ?? null, () => participants(results?.participants, id));
+    section("participants", [results?.participants, results?.standing, results?.excluded], () => participants(results));
     if (results !== null) {
-      const { blocks, scale, stimuli, different_stimuli } = results;
-      section("choices", [blocks, scale], () => choices(results));
+      const { blocks, scale, standing, stimuli, different_stimuli } = results;
+      section("choices", [blocks, scale, standing.summary], () => choices(results));
       judge(selection, results);
       section("stimuli", [stimuli, different_stimuli], () => [h("h2", {}, "Stimuli"), ...(stimuli.length > 0 ? gallery(stimuli, different_stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
       section("data", [results.version, selection.pooled], () => data({ ...selection, version: results.version }));
@@ -141,6 +141,7 @@ function head(id: string, title: string, results: Results | null): Node[] {
     h("p", { class: "quiet" }, id, ...(results === null ? [] : [" · version ", number(short(results.version), results.version)])),
     ...(others > 0 ? [h("p", { class: "quiet" }, `${count(others, "session")} of other versions of this study ${others === 1 ? "is" : "are"} stored too and left out here.`)] : []),
     invitation(id),
+    rehearsal(id),
   ];
 }
 
@@ -150,18 +151,50 @@ function invitation(study: string): HTMLElement {
   return h("p", { class: "invitation" }, h("a", { href: address, target: "_blank", rel: "noopener" }, address), copyButton("Copy the participants' link", () => address, { class: "primary" }));
 }
 
-function participants(people: Participants | undefined, id: string): Node[] {
-  const { started, in_progress, completed } = people ?? { started: 0, in_progress: 0, completed: 0 };
+/** Trying a study without spoiling it. Colleagues who do not sign in need a signed link. */
+function rehearsal(study: string): HTMLElement {
+  const preview = h("a", { href: `/study/${encodeURIComponent(study)}?preview`, target: "_blank", rel: "noopener", "data-testid": "preview" }, "Preview");
+  const made = h("span", { role: "status" });
+  const link = (visit: "pilot" | "preview", label: string) => {
+    const make = async () => {
+      try {
+        const { path, expires_at_s } = await makeLink(study, visit);
+        const address = `${location.origin}${path}`;
+        made.replaceChildren(h("code", {}, address), " ", copyButton("Copy it", () => address), ` Good until ${new Date(expires_at_s * 1000).toLocaleString("en")}.`);
+      } catch {
+        made.textContent = "The link could not be made. Please try again.";
+      }
+    };
+    return h("button", { type: "button", "data-testid": `${visit}-link`, onclick: () => void make() }, label);
+  };
+  return h("p", { class: "quiet" }, "Try it: ", preview, " (nothing is stored), or make a ", link("pilot", "Pilot link"), " (stored, left out of every analysis) or a ", link("preview", "Preview link"), " for somebody who does not sign in. ", made);
+}
+
+function participants(results: Results | null): Node[] {
+  const { started, in_progress, completed } = results?.participants ?? { started: 0, in_progress: 0, completed: 0 };
   const figure = (n: number, label: string, testid: string) => h("div", { class: "figure" }, h("strong", { "data-testid": testid }, number(n.toLocaleString("en"), n)), h("span", {}, label));
-  const left = Math.max(0, started - in_progress - completed);
   const heading = h("h2", {}, "Participants");
-  if (started === 0) {
-    return [heading, h("p", { class: "empty" }, `Nobody has taken part yet. Send people the link above, or open it yourself to try the study: /study/${id}.`)];
-  }
+  const summary = h("p", { "data-testid": "standing" }, results?.standing.summary ?? "0 began.");
+  const begin = "Send people the link above; to try the study yourself, use Preview.";
+  if (started === 0) return [heading, summary, h("p", { class: "empty" }, begin), ...leftOut(results)];
   return [
     heading,
     h("div", { class: "figures" }, figure(completed, "completed", "participants-completed"), figure(in_progress, "in progress", "participants-in-progress"), figure(started, "started", "participants-started")),
-    ...(left > 0 ? [h("p", { class: "quiet" }, `${count(left, "participant")} left before the end.`)] : []),
+    summary,
+    ...leftOut(results),
+  ];
+}
+
+/** Who is not judged and why, and what was noticed of sessions. */
+function leftOut(results: Results | null): Node[] {
+  if (results === null) return [];
+  const { excluded, standing } = results;
+  const session = (id: string) => number(id.slice(0, 13), id);
+  const list = (title: string, items: Node[]) => (items.length === 0 ? [] : [h("details", {}, h("summary", {}, title), h("ul", {}, ...items))]);
+  return [
+    ...list(`${excluded.length} left out by your rules`, excluded.map(({ session_id, why }) => h("li", {}, session(session_id), `: ${why}`))),
+    ...list(`${count(standing.repeated.length, "session")} of persons who had taken part before`, standing.repeated.map(({ session_id, counted }) => h("li", {}, session(session_id), ": ", session(counted), " counts"))),
+    ...list("What was noticed of sessions", standing.flagged.map(({ flag, meaning, sessions, excludes }) => h("li", {}, h("code", {}, flag), `: ${count(sessions, "session")}, ${meaning}${excludes ? "; left out by your rules" : ""}`))),
   ];
 }
 
@@ -173,7 +206,9 @@ function data(selection: Selection): Node[] {
   return [
     h("h2", {}, "Report and data"),
     h("p", {}, file("report.html", "Download report (HTML)"), ": everything on this page and the methods, in one file that prints well. ", file("report.md", "Download report (Markdown)"), ": the same for a repository or a paper."),
-    h("p", {}, file("responses.csv", "Responses (CSV)"), ": one row a trial, as it was stored. ", file("codebook.csv", "Codebook (CSV)"), ": what each column means. ", file("pairs.csv", "Pairs (CSV)"), ": the choices as pwcmp reads them."),
+    h("p", {}, file("responses.csv", "Responses (CSV)"), ": one row a trial, as it was stored. ", file("codebook.csv", "Codebook (CSV)"), ": what each column means. ", file("pairs.csv", "Pairs (CSV)"), ": the choices as pwcmp reads them. ", file("events.csv", "Events (CSV)"), ": lost focus, resizes, inputs that did not count (", file("events_codebook.csv", "codebook"), ")."),
+    h("p", {}, file("participants.csv", "Participants (CSV)"), ": one row a session, with codes, times and browsers. ", file("participants_codebook.csv", "Codebook of participants (CSV)"), "."),
+    h("p", {}, file("export.xlsx", "All tables (Excel)"), ": for a spreadsheet, in any language. The CSV files are for R, Python and other programs; a spreadsheet set to a decimal comma misreads their numbers."),
     h("p", { class: "quiet" }, "The same of the current version from the command line: ", h("code", {}, `kelir stats ${study} --format csv`), ", ", h("code", {}, `kelir report ${study} -o report.html`)),
   ];
 }

@@ -19,7 +19,8 @@ export interface Credentials {
 }
 
 const v1 = "/api/v1";
-const session = (id: string) => `${v1}/sessions/${encodeURIComponent(id)}`;
+/** A preview is no session: it has its own addresses, where nothing is stored. */
+const session = (id: string) => `${v1}/${id.startsWith("preview-") ? "previews" : "sessions"}/${encodeURIComponent(id)}`;
 
 /** Asks, and takes only what can be the server's answer: it has all of `fields`. A yes without them is somebody else's. */
 async function ask<T extends object>(path: string, fields: readonly (keyof T & string)[], options: Options = {}): Promise<T> {
@@ -32,6 +33,11 @@ async function ask<T extends object>(path: string, fields: readonly (keyof T & s
 export const fetchStudy = (study: string) => ask<Study>(`${v1}/studies/${encodeURIComponent(study)}`, ["id", "texts", "trial_kinds"]);
 
 /** Begins a session; asked again with the same key, the server knows that it is the same one. */
+/** What a link makes of a visit. */
+export type VisitKind = Schemas["VisitKind"]["visit"];
+
+export const fetchVisit = (study: string, search: string) => request<Schemas["VisitKind"]>(`${v1}/studies/${encodeURIComponent(study)}/visit${search}`);
+
 export const createSession = (study: string, body: Schemas["NewSession"], key: string) =>
   ask<Schemas["CreatedSession"]>(`${v1}/studies/${encodeURIComponent(study)}/sessions`, ["session_id", "token"], { method: "POST", body, headers: { "idempotency-key": key } });
 

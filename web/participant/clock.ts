@@ -1,4 +1,4 @@
-/** Time as the display has it: the measured refresh, and which frame of an animation belongs to which refresh. */
+/** Time as the display has it: the measured refresh, and which frame of an animation belongs to which moment. */
 
 /**
  * The refresh period in ms, from timestamps of successive animation frames: the mean of the intervals near their
@@ -16,84 +16,93 @@ export function refreshPeriod(timestamps: readonly number[]): number | null {
 /** To three decimals: microseconds and millihertz, which is more than a browser's clock knows. */
 export const rounded = (x: number): number => Math.round(x * 1000) / 1000;
 
-/** What is logged of an animation: enough to rebuild its frame times to within a refresh. */
+/** What is logged of an animation: what was shown when. */
 export interface FrameLog {
   fps: number;
   refresh_hz: number;
-  /** Refreshes that each frame is shown for. */
-  hold: number;
   /** Refreshes from the first frame to the choice. */
   refreshes: number;
   /** Animation frames drawn, and passed over without being drawn. */
   shown: number;
   skipped: number;
+  /** Frames never drawn, or later than their time by more than a refresh. */
+  missed_frames: number;
   /** Refreshes at which the browser did not let us draw. */
   missed_refreshes: number;
   longest_interval_ms: number;
-  /** How often the time between two draws was so many refreshes. */
-  intervals: Record<string, number>;
-  /** `[refresh, refreshes late]` of the first late draws. */
-  late: Array<[number, number]>;
+  /** Each frame drawn: its number, counted on through loops, and ms since the first; the first `MOST_DRAWS` of them. */
+  draws: Array<[number, number]>;
 }
 
-/** Which frame to draw at each animation frame of the browser. */
+const MOST_DRAWS = 600;
+
+/** A clock's reading is exact to this part of a refresh. */
+const JITTER = 0.1;
+
+/**
+ * Which frame to draw at each animation frame of the browser: the one whose time this refresh is nearest to. It depends on
+ * the time since the first frame alone, so no refresh rate, steady or not, makes a film faster or slower, and nothing adds up.
+ */
 export class AnimationClock {
-  /** Refreshes per frame: the nominal frame time as a whole multiple of the measured refresh. */
-  readonly hold: number;
   readonly #fps: number;
   readonly #frames: number;
   readonly #loop: boolean;
   readonly #periodMs: number;
-  #last: number | null = null;
-  #refresh = 0;
+  /** Half a refresh, so that a frame due at a refresh is not left to the clock's jitter; never more than half a frame. */
+  readonly #nearestMs: number;
+  #first: number | null = null;
+  #last = 0;
   #count = -1;
-  #log = { shown: 0, skipped: 0, missed: 0, longest: 0, intervals: {} as Record<string, number>, late: [] as Array<[number, number]> };
+  #log = { refreshes: 0, shown: 0, skipped: 0, late: 0, missed: 0, longest: 0, draws: [] as Array<[number, number]> };
 
   constructor(options: { fps: number; frames: number; loop: boolean; periodMs: number }) {
     this.#fps = options.fps;
     this.#frames = options.frames;
     this.#loop = options.loop;
     this.#periodMs = options.periodMs;
-    this.hold = Math.max(1, Math.round(1000 / options.fps / options.periodMs));
+    this.#nearestMs = Math.min(options.periodMs, 1000 / options.fps) / 2;
   }
 
-  /** The frame for the refresh at `now` (ms); each step is rounded to whole refreshes, so errors of the period don't add up. */
+  /** The frame for the refresh at `now`, ms. */
   tick(now: number): number {
-    if (this.#last !== null) {
-      const interval = now - this.#last;
-      const steps = Math.max(0, Math.round(interval / this.#periodMs));
-      this.#refresh += steps;
-      this.#log.longest = Math.max(this.#log.longest, interval);
-      this.#log.intervals[steps] = (this.#log.intervals[steps] ?? 0) + 1;
-      if (steps > 1) {
-        this.#log.missed += steps - 1;
-        if (this.#log.late.length < 50) this.#log.late.push([this.#refresh, steps - 1]);
-      }
-    }
+    if (this.#first === null) this.#first = this.#last = now;
+    this.#interval(now - this.#last);
     this.#last = now;
-    const count = Math.floor(this.#refresh / this.hold);
-    const position = this.#loop ? count % this.#frames : Math.min(count, this.#frames - 1);
-    const moved = count - this.#count;
-    if (moved > 0 && (this.#loop || this.#count < this.#frames - 1)) {
-      this.#log.shown += 1;
-      this.#log.skipped += moved - 1;
-    }
-    this.#count = count;
-    return position;
+    const elapsed = now - this.#first;
+    const due = Math.floor(((elapsed + this.#nearestMs) * this.#fps) / 1000);
+    const count = Math.max(this.#count, this.#loop ? due : Math.min(due, this.#frames - 1));
+    if (count > this.#count) this.#draw(count, elapsed);
+    return count % this.#frames;
   }
 
   log(): FrameLog {
+    const { refreshes, shown, skipped, late, missed, longest, draws } = this.#log;
     return {
       fps: this.#fps,
       refresh_hz: rounded(1000 / this.#periodMs),
-      hold: this.hold,
-      refreshes: this.#refresh,
-      shown: this.#log.shown,
-      skipped: this.#log.skipped,
-      missed_refreshes: this.#log.missed,
-      longest_interval_ms: rounded(this.#log.longest),
-      intervals: { ...this.#log.intervals },
-      late: [...this.#log.late],
+      refreshes,
+      shown,
+      skipped,
+      missed_frames: skipped + late,
+      missed_refreshes: missed,
+      longest_interval_ms: rounded(longest),
+      draws: [...draws],
     };
+  }
+
+  #interval(ms: number): void {
+    const steps = Math.max(0, Math.round(ms / this.#periodMs));
+    this.#log.refreshes += steps;
+    this.#log.missed += Math.max(0, steps - 1);
+    this.#log.longest = Math.max(this.#log.longest, ms);
+  }
+
+  #draw(count: number, elapsed: number): void {
+    const behind = elapsed - (1000 * count) / this.#fps;
+    this.#log.shown += 1;
+    this.#log.skipped += count - this.#count - 1;
+    if (behind > (1 + JITTER) * this.#periodMs) this.#log.late += 1;
+    if (this.#log.draws.length < MOST_DRAWS) this.#log.draws.push([count, rounded(elapsed)]);
+    this.#count = count;
   }
 }

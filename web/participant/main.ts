@@ -1,6 +1,7 @@
 /** The participant's page: one study, from consent to the completion code. */
 import { Refused } from "../shared/http.ts";
 import * as api from "./api.ts";
+import { choose, inLanguage, type Reading } from "./language.ts";
 import { inkOn, srgbCode } from "./layout.ts";
 import { notice, persist } from "./notice.ts";
 import { action, display, Ended, lastPage } from "./pages.ts";
@@ -8,6 +9,7 @@ import { Session } from "./session.ts";
 import { Unusable } from "./stimuli.ts";
 import { openStore, sessionKey } from "./storage.ts";
 import { openTabs } from "./tabs.ts";
+import { showRibbon, visitOf } from "./trying.ts";
 import { Visit } from "./visit.ts";
 import { settle, Tab } from "./whose.ts";
 import { speak, spoken, words } from "./words/index.ts";
@@ -17,13 +19,16 @@ document.body.append(display, notice);
 speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
-/** What the link says of the participant, within what the server takes. */
+const query = new URLSearchParams(location.search);
+/** What the link says of the participant, within what the server takes; an id that is too long stays so, and is refused aloud. `lang` is the page's own. */
 const params = Object.fromEntries(
-  [...new URLSearchParams(location.search)].filter(([name, value]) => new Blob([name]).size <= 64 && new Blob([value]).size <= 512).slice(0, 64),
+  [...query].filter(([name]) => name !== "lang" && [...name].length <= 64).map(([name, value]) => [name, [...value].slice(0, 1024).join("")]).slice(0, 64),
 );
 
 async function start(): Promise<void> {
-  const key = sessionKey(studyId, params);
+  const visit = await visitOf(studyId);
+  const kept = visit !== "preview";
+  const key = kept ? sessionKey(studyId, params) : `kelir:preview:${crypto.getRandomValues(new Uint32Array(2)).join("-")}`;
   let session: Session | null = null;
   const tabs = openTabs(key, () => {
     session?.stop();
@@ -37,10 +42,11 @@ async function start(): Promise<void> {
     if (!(error instanceof Refused) || error.status !== 404) throw error;
     return lastPage(words("no-study-title"), [words("no-study")]);
   }
-  dress(study);
-  const store = openStore(() => localStorage);
+  let read = dressed(study, choose(study, query.get("lang"), navigator.languages));
+  showRibbon(visit);
+  const store = openStore(() => (kept ? localStorage : memoryOnly()));
   session = new Session(study.id, key, params, store);
-  const tab = new Tab(key, openStore(() => sessionStorage));
+  const tab = new Tab(key, openStore(() => (kept ? sessionStorage : memoryOnly())));
   await settle(session, tab, study.per_visit, elsewhere);
   tabs.claim();
   session.resume();
@@ -48,9 +54,22 @@ async function start(): Promise<void> {
   // A page that is brought back as it was may be of long ago: the server's word counts.
   addEventListener("pageshow", ({ persisted }) => persisted && store.durable && location.reload());
   // A session keeps the texts and the question that it began with.
-  dress(session.state?.study ?? study);
+  if (session.state !== null) read = dressed(session.state.study, session.state.language);
   session.rescue();
-  await new Visit(study, session, tab).run();
+  await new Visit(read, session, tab).run();
+}
+
+/** The study as it reads in a language; the page speaks that, too. */
+function dressed(study: api.Study, language: string): Reading {
+  const read = inLanguage(study, language);
+  speak(language);
+  dress(read);
+  return read;
+}
+
+/** In place of a storage: a preview leaves nothing behind. */
+function memoryOnly(): Storage {
+  throw new Error("a preview keeps nothing");
 }
 
 /** Gives the page its title, the grey that surrounds everything, and an ink that can be read on it. */
@@ -65,6 +84,7 @@ function dress({ title, surround }: api.Study): void {
 function stop(error: unknown): void {
   console.error(error);
   const again = action(words("reload"), () => location.reload());
+  if (error instanceof Refused && error.code === "link_refused") return lastPage(words("link-title"), [error.message]);
   if (error instanceof Ended) return lastPage(error.heading, error.texts, again);
   const known = error instanceof Refused || error instanceof Unusable ? error.message : words("stopped");
   lastPage(words("stopped-title"), [`${known} ${words("kept")}`], again);

@@ -14,7 +14,7 @@ const troubles = new Map<About, string>();
 export function say(about: About, sentence: string | null): void {
   if (sentence === null) troubles.delete(about);
   else troubles.set(about, sentence);
-  const text = [...troubles.values()][0] ?? "";
+  const text = troubles.get("trial") ?? [...troubles.values()][0] ?? "";
   if (notice.textContent !== text) notice.textContent = text;
 }
 

@@ -5,6 +5,7 @@ import * as api from "./api.ts";
 import { describeDisplay } from "./display.ts";
 import { persist, say } from "./notice.ts";
 import { Outbox } from "./outbox.ts";
+import { Ended } from "./pages.ts";
 import { remaining, withAnswered } from "./plan.ts";
 import type { Store } from "./storage.ts";
 import { words } from "./words/index.ts";
@@ -18,6 +19,15 @@ interface Remembered extends api.Credentials {
 function remembered(kept: Partial<Remembered> | null): Remembered | null {
   const { session_id, token, reloads } = typeof kept === "object" && kept !== null ? kept : {};
   return typeof session_id === "string" && typeof token === "string" ? { session_id, token, reloads: typeof reloads === "number" ? reloads : 0 } : null;
+}
+
+/** Why there is no session, as a page of its own where it is the link's doing. */
+function noSession(error: unknown): unknown {
+  const code = error instanceof Refused ? error.code : "";
+  if (code === "already_finished") return new Ended(words("finished-title"), [words("finished")], error);
+  if (code === "already_begun") return new Ended(words("begun-elsewhere-title"), [words("begun-elsewhere")], error);
+  if (code === "invalid_field") return new Ended(words("link-title"), [words("link")], error);
+  return error;
 }
 
 /** Stands between a session's key and its id once it is left. */
@@ -110,9 +120,9 @@ export class Session {
   }
 
   /** Nothing is stored of anybody before this. */
-  async consent(): Promise<void> {
+  async consent(language: string): Promise<void> {
     if (this.#who === null) {
-      const { token, ...state } = await this.#create();
+      const { token, ...state } = await this.#create(language);
       this.#remember({ session_id: state.session_id, token, reloads: 0 });
       this.#store.remove(this.#startKey);
       this.#outbox = this.#openOutbox();
@@ -121,16 +131,16 @@ export class Session {
     this.state = await persist(() => api.giveConsent(who));
   }
 
-  /** Begins a session. Its key stays until the reply is here, so that a lost reply makes no second session. */
-  async #create(): Promise<api.Schemas["CreatedSession"]> {
+  /** Begins a session. Its key stays until the reply is here, so that a lost reply makes no second session; in another language it is another one. */
+  async #create(language: string): Promise<api.Schemas["CreatedSession"]> {
     const key = this.#store.read<string>(this.#startKey) ?? randomKey();
     this.#store.write(this.#startKey, key);
     try {
-      return await persist(() => api.createSession(this.#studyId, { params: this.#params, display: describeDisplay() }, key));
+      return await persist(() => api.createSession(this.#studyId, { params: this.#params, display: describeDisplay(language) }, `${key}-${language}`));
     } catch (error) {
       // A final no: the next try is another one.
       this.#store.remove(this.#startKey);
-      throw error;
+      throw noSession(error);
     }
   }
 
@@ -158,7 +168,10 @@ export class Session {
       this.#again.add(index);
       this.outbox.discard(index);
     }
-    if (again.length > 0) say("trial", words("answer-again"));
+    if (again.length > 0) {
+      say("answers", null);
+      say("trial", words("answer-again"));
+    }
     return again.length > 0;
   }
 
@@ -245,8 +258,5 @@ const timers = {
   random: Math.random,
 };
 
-/** 128 random bits in hex. */
-function randomKey(): string {
-  const bytes = crypto.getRandomValues(new Uint8Array(16));
-  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
-}
+/** A text that nobody else has. */
+const randomKey = () => Array.from({ length: 4 }, () => Math.random().toString(36).slice(2)).join("");

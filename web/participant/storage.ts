@@ -39,6 +39,7 @@ export function openStore(storage: () => Storage): Store {
       try {
         if (disk === null) throw new Error("no storage");
         disk.setItem(key, text);
+        if (disk.getItem(key) !== text) throw new Error("what was stored is not there"); // some private windows take all and keep nothing
         memory.delete(key);
       } catch {
         memory.set(key, text);

@@ -1,6 +1,9 @@
 /** jsPsych plugin: a page of text with one action. Its content is DOM nodes, so a study's texts can never become markup. */
 import { type JsPsychPlugin, ParameterType, type TrialType } from "jspsych";
 import { h } from "../shared/dom.ts";
+import type { Rules } from "./inputs/guard.ts";
+import { offered } from "./inputs/offered.ts";
+import { inputs } from "./inputs/watch.ts";
 
 const info = <const>{
   name: "text-page",
@@ -11,6 +14,8 @@ const info = <const>{
     content: { type: ParameterType.FUNCTION, default: undefined },
     /** The action's words. */
     button: { type: ParameterType.STRING, default: undefined },
+    /** When a press of the button counts: a double click must not press the next page's too. */
+    rules: { type: ParameterType.OBJECT, default: { min_visible_ms: 0, min_gap_ms: 0 } },
     testid: { type: ParameterType.STRING, default: "continue" },
     /** May give a promise; the page goes on when it resolves. */
     action: { type: ParameterType.FUNCTION, default: () => {} },
@@ -31,9 +36,13 @@ export default class TextPagePlugin implements JsPsychPlugin<Info> {
     const button = h("button", { type: "button", class: "action", "data-testid": trial.testid ?? "continue" }, trial.button);
     showPage(display, trial.heading, trial.content() as Node[], button);
     onLoad?.();
+    const rules = trial.rules as Rules;
+    offered([button], () => inputs.gapLeft(rules));
+    let pressed = false;
     return new Promise((resolve, reject) => {
-      button.addEventListener("click", async () => {
-        if (button.getAttribute("aria-disabled") === "true") return;
+      button.addEventListener("click", async (event) => {
+        if (pressed || inputs.judge(inputs.click(event), rules, Number.POSITIVE_INFINITY) !== null) return;
+        pressed = true;
         button.setAttribute("aria-disabled", "true");
         try {
           await trial.action?.();

@@ -22,7 +22,7 @@ const summaries = [
   block("animation", "Animation", "animation", "mc", [26, 7], animation),
 ] as const;
 
-const none: Test = { mean: null, sd: null, t: null, df: null, p: null, note: "No participant has answered every pair yet." };
+const none: Test = { mean: null, sd: null, t: null, df: null, p: null, note: "of the participants who are judged, none answered all pairs" };
 const unanswered = [block("stills", "Stills", "still", "mc", [0, 0, 0], none), block("animation", "Animation", "animation", "mc", [0, 0], none)];
 
 const around = (x: number, half: number): Schemas["Interval"] => ({ low: x - half, high: x + half, level: 0.95 });

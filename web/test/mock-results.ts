@@ -73,8 +73,17 @@ function chosen(id: string, asked: string, pooledWith: string | null) {
 const screening: Schemas["Screening"] = { incomplete: false, max_fast_trials: 1, straight_lining: true };
 const { trial_kinds: _, ...words } = { ...study, trial_kinds: [] };
 const design: Schemas["StudyDefinition"] = { ...words, seed: 1, idle_minutes: 30, completion: {}, conditions: {}, blocks: [], screening };
+const standing = (taken: boolean): Schemas["Standing"] => ({
+  summary: taken ? "41 began, 32 completed, 3 in progress, 1 left out by your rules, 31 judged." : "0 began.",
+  judged: taken ? 31 : 0,
+  repeated: [],
+  pilots: 0,
+  simulated: 0,
+  with: [],
+  flagged: taken ? [{ flag: "repeated_id", meaning: "the same id had begun the study before", sessions: 1, excludes: false }] : [],
+});
 const excluded: Schemas["Excluded"][] = [
-  { session_id: "01936d2e-5b1a-7c3e-9a53-0d4b1f2a6c11", reasons: [{ reason: "too_fast", trials: 4, allowed: 1 }, { reason: "straight_lining", trials: 5 }] },
+  { session_id: "01936d2e-5b1a-7c3e-9a53-0d4b1f2a6c11", reasons: [{ reason: "too_fast", trials: 4, allowed: 1 }, { reason: "straight_lining", trials: 5 }], why: "4 answers too fast, 1 allowed; the same side in all 5 trials", is_completed: true },
 ];
 
 export const results =
@@ -99,7 +108,7 @@ export const results =
     if (choice === null) return problem(404, "not_found", "There is no such version.");
     const taken = choice.participants.started > 0;
     const blocks = taken ? judged : unjudged;
-    const common = { study: id, title: found.title, ...choice, stimuli: taken ? stimuliOf(stuff) : [] };
+    const common = { study: id, title: found.title, ...choice, standing: standing(taken), stimuli: taken ? stimuliOf(stuff) : [] };
     if (what === "results") {
       const reply: Schemas["StudyResults"] = { ...common, excluded: [], blocks };
       return [200, reply];

@@ -27,6 +27,8 @@ const HEADERS = {
 export interface Session {
   id: string;
   token: string;
+  /** By which it was begun. */
+  key: string | undefined;
   consented: boolean;
   answers: Map<number, string>;
   code: string | null;
@@ -35,7 +37,7 @@ export interface Session {
 
 /** `[status, JSON or null, headers?]` */
 type Reply = [number, unknown, Record<string, string>?];
-type Fault = { status: number; body?: unknown; html?: string; after?: boolean } | "hang up" | "stall" | "half" | null;
+type Fault = { status?: number; body?: unknown; html?: string; after?: boolean } | "hang up" | "stall" | "half" | null;
 export type Results = (path: string, query: URLSearchParams) => Reply | null;
 
 export interface Options {
@@ -47,8 +49,14 @@ export interface Options {
   stuff?: Material;
   /** An adaptive plan: so many trials are decided at the start, one more with each answer, and `most` is promised. */
   grow?: { start: number; most: number } | null;
+  /** A script that runs before the page's own. */
+  spoil?: string;
+  /** When an answer counts. */
+  response?: Study["response"];
   /** Each visit is somebody else's. */
   perVisit?: boolean;
+  /** Texts in place of the study's, in every language. */
+  texts?: Partial<Study["texts"]>;
 }
 
 export const problem = (status: number, code: Schemas["ProblemCode"], detail: string, more: Partial<Schemas["Problem"]> = {}): Reply => {
@@ -56,12 +64,14 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, perVisit = false }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, perVisit = false, spoil = "", texts = {} }: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
 
-  const found = (): Study => ({ ...study, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
+  const worded = <T extends Pick<Study, "texts">>(told: T): T => ({ ...told, texts: { ...told.texts, ...texts } });
+  const translations = Object.fromEntries(Object.entries(study.translations).map(([language, told]) => [language, worded(told)]));
+  const found = (): Study => ({ ...worded(study), translations, response, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
     return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));
@@ -72,6 +82,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     session_id: s.id,
     study_id: study.id,
     study: found(),
+    language: Object.hasOwn(study.translations, String(s.body.display?.language)) ? String(s.body.display?.language) : study.language,
     status: s.code ? "completed" : s.consented ? "in_progress" : "consent",
     named: s.body.params?.["PROLIFIC_PID"] !== undefined,
     consented: s.consented,
@@ -121,13 +132,15 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     return researcher ? [200, name] : problem(401, "unauthorized", "Sign in first.");
   };
 
-  const api = (method: string, path: string, query: URLSearchParams, text: string, token: string | undefined): Reply => {
+  const api = (method: string, path: string, query: URLSearchParams, text: string, token: string | undefined, key: string | undefined): Reply => {
     const body: unknown = text === "" ? undefined : JSON.parse(text);
     if (method === "GET" && path === `/api/v1/studies/${study.id}`) {
       return [200, found()];
     }
     if (method === "POST" && path === `/api/v1/studies/${study.id}/sessions`) {
-      const s: Session = { id: randomUUID(), token: randomUUID(), consented: false, answers: new Map(), code: null, body: body as Session["body"] };
+      const same = key === undefined ? undefined : [...sessions.values()].find((other) => other.key === key && !other.consented);
+      const s: Session = same ?? { id: randomUUID(), token: randomUUID(), key, consented: false, answers: new Map(), code: null, body: body as Session["body"] };
+      s.token = randomUUID();
       sessions.set(s.id, s);
       const created: Schemas["CreatedSession"] = { ...state(s), token: s.token };
       return [201, created];
@@ -157,21 +170,23 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     if (planned === "hang up") return void req.socket.destroy();
     if (planned === "stall") return;
     if (planned === "half") return void (res.writeHead(200, { "content-type": "application/json", "content-length": 500 }), res.write('{"acknowledged":'));
-    if (planned?.html !== undefined) return send(planned.status, "text/html", planned.html);
-    if (planned !== null && planned.after !== true) return json(planned.body === undefined ? problem(planned.status, "internal", "A planned fault.") : [planned.status, planned.body]);
+    if (planned?.html !== undefined) return send(planned.status ?? 200, "text/html", planned.html);
+    if (planned !== null && planned.after !== true) return json(planned.body === undefined ? problem(planned.status ?? 500, "internal", "A planned fault.") : [planned.status ?? 500, planned.body]);
     if (path.startsWith("/api/")) {
-      log.push({ method, path, query: search, text, key: req.headers["idempotency-key"] as string | undefined });
-      const answer = api(method, path, query, text, req.headers.authorization?.replace(/^Bearer /, ""));
+      const key = req.headers["idempotency-key"]?.toString();
+      log.push({ method, path, query: search, text, key });
+      const answer = api(method, path, query, text, req.headers.authorization?.replace(/^Bearer /, ""), key);
       return planned?.after === true ? void req.socket.destroy() : json(answer);
     }
     if (path.startsWith("/stimuli/")) {
       const stimulus = stuff.bytes.get(path.slice(9));
       if (stimulus === undefined) return json(problem(404, "not_found", "No such stimulus."));
-      return send(200, stimulus.type, stimulus.data, { "cache-control": "public, max-age=31536000, immutable" });
+      return send(200, "application/vnd.kelir.stimulus", stimulus.data, { "cache-control": "public, max-age=31536000, immutable" });
     }
     const page = path.startsWith("/study/") ? "participant.html" : path.startsWith("/console") ? "console.html" : null;
     try {
-      if (page !== null) return send(200, "text/html; charset=utf-8", await readFile(join(dist, page)));
+      if (page !== null) return send(200, "text/html; charset=utf-8", (await readFile(join(dist, page), "utf8")).replace("<script", () => `${spoil === "" ? "" : '<script src="/assets/spoil.js"></script>'}<script`));
+      if (path === "/assets/spoil.js") return send(200, TYPES[".js"] ?? "", spoil);
       if (path.startsWith("/assets/")) return send(200, TYPES[extname(path)] ?? "application/octet-stream", await readFile(join(dist, "assets", path.slice(8))));
     } catch {
       // not found, below

@@ -1,8 +1,77 @@
 //! What goes to standard output.
 
 use std::io::Write;
+use std::path::PathBuf;
 
 use anyhow::Result;
+use clap::ValueEnum;
+use kelir_report::csv_cell;
+use serde::Serialize;
+
+/// How results are printed.
+#[derive(clap::Args, Clone, Copy)]
+pub struct Printed {
+    /// Print one JSON document, in full precision.
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
+    #[arg(long, value_enum, default_value = "table")]
+    format: Format,
+}
+
+impl Printed {
+    /// The form asked for.
+    pub fn form(self) -> Format {
+        if self.json { Format::Json } else { self.format }
+    }
+}
+
+/// A form of results.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Format {
+    /// Aligned columns.
+    Table,
+    /// As `--json`.
+    #[value(hide = true)]
+    Json,
+    /// Comma-separated, full precision, one header line.
+    Csv,
+}
+
+/// `--json` of commands that take long and may also leave their figures in a file.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Figures {
+    /// Print one JSON document in place of the text, in full precision; with FILE, write it there beside the text.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    json: Option<PathBuf>,
+}
+
+impl Figures {
+    /// Prints a text, unless the figures stand in its place.
+    pub fn say(&self, text: &str) -> Result<()> {
+        if self.printed() { Ok(()) } else { print(text) }
+    }
+
+    /// Prints or writes the figures, if they are asked for.
+    pub fn give(&self, figures: &impl Serialize) -> Result<()> {
+        match &self.json {
+            None => Ok(()),
+            Some(_) if self.printed() => print_json(figures),
+            Some(path) => {
+                let text = serde_json::to_string_pretty(figures)?;
+                Ok(kelir_render::file::write_atomic(path, text.as_bytes())?)
+            }
+        }
+    }
+
+    fn printed(&self) -> bool {
+        self.json.as_ref().is_some_and(|path| path.as_os_str() == "-")
+    }
+}
+
+/// Prints one JSON document.
+pub fn print_json(document: &impl Serialize) -> Result<()> {
+    print(&serde_json::to_string_pretty(document)?)
+}
 
 /// Prints a document and a final newline; a closed pipe (`kelir … | head`) is no failure.
 pub fn print(text: &str) -> Result<()> {
@@ -35,16 +104,12 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     lines.join("\n")
 }
 
-/// RFC 4180: quoted where needed.
+/// A header and rows as CSV.
 pub fn csv(header: &[&str], rows: &[Vec<String>]) -> String {
-    let quote = |cell: &str| {
-        let plain = !cell.contains([',', '"', '\n', '\r']);
-        if plain { cell.to_owned() } else { format!("\"{}\"", cell.replace('"', "\"\"")) }
-    };
     let head: Vec<String> = header.iter().map(|title| (*title).to_owned()).collect();
     let lines = std::iter::once(&head)
         .chain(rows)
-        .map(|row| row.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(","));
+        .map(|row| row.iter().map(|cell| csv_cell(cell)).collect::<Vec<_>>().join(","));
     lines.collect::<Vec<_>>().join("\n")
 }
 

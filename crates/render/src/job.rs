@@ -6,6 +6,7 @@
 mod drawing;
 mod key;
 mod measure;
+mod rehearsal;
 
 use std::collections::BTreeMap;
 
@@ -21,6 +22,7 @@ pub use drawing::{Drawing, Drawn};
 use measure::measure;
 pub use measure::{Measured, StandardError};
 pub(crate) use measure::{Spread, brightest, irradiance, named};
+pub use rehearsal::rehearse;
 
 /// Media type of an animation's manifest.
 pub const ANIMATION: &str = "application/vnd.kelir.animation+json";

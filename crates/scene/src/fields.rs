@@ -71,8 +71,8 @@ fn cloth(
     height: Option<f64>,
 ) -> Option<Albedo> {
     let mut fields = node.table()?;
-    let image = fields.get("image");
-    let weave = fields.get("weave");
+    let image = fields.given("image", "an opaque sRGB picture, stretched over the cloth; or a weave");
+    let weave = fields.given("weave", "a cotton cloth; or an image");
     let known = image.is_some() != weave.is_some();
     fields.done();
     if !known {
@@ -232,14 +232,19 @@ pub(crate) fn ambient(node: &Node) -> Option<Ambient> {
 
 pub(crate) fn exposure(node: &Node) -> Option<Exposure> {
     let mut fields = node.table()?;
-    let white = fields.optional("white", Exposure::Auto, |n| {
-        if n.is_string() {
-            return n.choice(&[("auto", Exposure::Auto)]);
-        }
-        let white =
-            n.number_in((Excluded(0.0), Included(RADIANCE)), "white is \"auto\" or a radiance above 0")?;
-        Some(Exposure::White(white))
-    });
+    let white = fields.optional(
+        "white",
+        "\"auto\" or the radiance that is shown as white; without it \"auto\"",
+        Exposure::Auto,
+        |n| {
+            if n.is_string() {
+                return n.choice(&[("auto", Exposure::Auto)]);
+            }
+            let white =
+                n.number_in((Excluded(0.0), Included(RADIANCE)), "white is \"auto\" or a radiance above 0")?;
+            Some(Exposure::White(white))
+        },
+    );
     fields.done();
     white
 }

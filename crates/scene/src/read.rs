@@ -108,6 +108,7 @@ impl<'a> Node<'a> {
 
     /// A number in a range, else `rule`.
     pub fn number_in(&self, range: impl std::ops::RangeBounds<f64>, rule: &str) -> Option<f64> {
+        noted(&self.path, Noted::Rule(rule));
         let number = self.number()?;
         if range.contains(&number) { Some(number) } else { self.refuse(rule) }
     }
@@ -123,6 +124,7 @@ impl<'a> Node<'a> {
 
     /// An integer in a range, else `rule`.
     pub fn integer_in(&self, range: impl std::ops::RangeBounds<i64>, rule: &str) -> Option<i64> {
+        noted(&self.path, Noted::Rule(rule));
         let integer = self.integer()?;
         if range.contains(&integer) { Some(integer) } else { self.refuse(rule) }
     }
@@ -145,12 +147,13 @@ impl<'a> Node<'a> {
 
     /// One of the named choices.
     pub fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
+        let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
+        noted(&self.path, Noted::Rule(&format!("one of {}", list(&names))));
         let string = self.string()?;
         let found = choices.iter().find(|(name, _)| *name == string);
         if let Some((_, choice)) = found {
             return Some(*choice);
         }
-        let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
         self.refuse(format!("must be one of {}{}", list(&names), did_you_mean(string, &names)))
     }
 
@@ -238,6 +241,7 @@ impl<'a> Fields<'a> {
         what: &str,
         read: impl FnOnce(&Node<'a>) -> Option<T>,
     ) -> Option<T> {
+        noted(&join(&self.node.path, key), Noted::Key { needed: true, what });
         match self.get(key) {
             Some(node) => read(&node),
             None => {
@@ -247,14 +251,21 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// An optional value: `default` when it is absent, `None` only when it is wrong.
+    /// A value that may be missing; `what` says what it is, and what is so without it.
+    pub fn given(&mut self, key: &'static str, what: &str) -> Option<Node<'a>> {
+        noted(&join(&self.node.path, key), Noted::Key { needed: false, what });
+        self.get(key)
+    }
+
+    /// An optional value: `default` when it is absent, `None` only when it is wrong. `what` says what it is, the default too.
     pub fn optional<T>(
         &mut self,
         key: &'static str,
+        what: &str,
         default: T,
         read: impl FnOnce(&Node<'a>) -> Option<T>,
     ) -> Option<T> {
-        match self.get(key) {
+        match self.given(key, what) {
             Some(node) => read(&node),
             None => Some(default),
         }
@@ -280,6 +291,21 @@ impl<'a> Fields<'a> {
         }
     }
 }
+
+/// What the reader asks for: the reference page is made of it.
+#[cfg_attr(not(test), expect(dead_code, reason = "the page is made by a test"))]
+pub(crate) enum Noted<'a> {
+    /// A key, whether it may not be missing, and what it is.
+    Key { needed: bool, what: &'a str },
+    /// A rule that a value is held to.
+    Rule(&'a str),
+}
+
+#[cfg(not(test))]
+fn noted(_: &str, _: Noted) {}
+
+#[cfg(test)]
+use crate::reference::noted;
 
 /// `a.b`, with a key that is no bare key quoted.
 fn join(path: &str, key: &str) -> String {
@@ -321,7 +347,7 @@ pub(crate) fn list<S: AsRef<str>>(names: &[S]) -> String {
 }
 
 /// ` (did you mean x?)` when a known name is close.
-pub(crate) fn did_you_mean<S: AsRef<str>>(name: &str, known: &[S]) -> String {
+pub fn did_you_mean<S: AsRef<str>>(name: &str, known: &[S]) -> String {
     let nearest = known.iter().map(|k| (edits(name, k.as_ref()), k.as_ref())).min();
     match nearest {
         Some((distance, known)) if distance <= 1 + known.len() / 4 => format!(" (did you mean {known}?)"),

@@ -128,14 +128,24 @@ fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option
     let mut sections = root.table()?;
     let screen = sections.need("screen", "the [screen] section", |n| fields::screen(n, name, &loader));
     let (lamp_m, emitters) = sections.need("lamp", "the [lamp] section", fields::lamp).unwrap_or_default();
-    let ambient = sections.optional("ambient", Ambient::None, fields::ambient);
+    let ambient = sections.optional(
+        "ambient",
+        "light that the lamp does not send directly; without it there is none",
+        Ambient::None,
+        fields::ambient,
+    );
     let mut white = None;
-    let exposure = sections.optional("exposure", Exposure::Auto, |n| {
-        white = Some(n.clone());
-        fields::exposure(n)
-    });
+    let exposure = sections.optional(
+        "exposure",
+        "what is shown as white; without it the brightest that can be seen",
+        Exposure::Auto,
+        |n| {
+            white = Some(n.clone());
+            fields::exposure(n)
+        },
+    );
     let entries = read_puppets(&mut sections, name, &loader);
-    let timeline = match sections.get("timeline") {
+    let timeline = match sections.given("timeline", "how the scene moves; without it it stands still") {
         Some(node) => read_timeline(&node, &entries).map(Some),
         None => Some(None),
     };
@@ -174,7 +184,11 @@ fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option
 }
 
 fn read_puppets<'a>(sections: &mut Fields<'a>, name: &str, loader: &Loader) -> Vec<Option<Entry<'a>>> {
-    let Some(node) = sections.get("puppets") else { return Vec::new() };
+    let Some(node) = sections
+        .given("puppets", "what hangs behind the cloth, one table each; without any the cloth is empty")
+    else {
+        return Vec::new();
+    };
     let Some(items) = node.array(limits::PUPPETS) else { return vec![None] };
     items.iter().map(|item| crate::puppet::read::read(item, name, loader)).collect()
 }

@@ -96,8 +96,10 @@ pub(crate) fn read<'r>(node: &Node, target: &dyn Fn(&Node) -> Option<Driven<'r>>
     let seconds = fields.need("seconds", seconds_rule, |n| {
         n.number_in((std::ops::Bound::Excluded(0.0), std::ops::Bound::Included(86400.0)), seconds_rule)
     });
-    let repeat = fields.optional("loop", false, |n| n.boolean());
-    let tracks = fields.optional("tracks", Vec::new(), |n| {
+    let repeat =
+        fields
+            .optional("loop", "whether it starts again at its end; without it false", false, |n| n.boolean());
+    let tracks = fields.optional("tracks", "what moves, one table each; without any nothing does", Vec::new(), |n| {
         let tracks: Vec<_> = n.array(limits::TRACKS)?.iter().map(|t| track(t, seconds, target)).collect();
         let items = n.array(limits::TRACKS)?;
         for (i, track) in tracks.iter().enumerate() {
@@ -131,9 +133,12 @@ fn track<'r>(
 ) -> Option<Track> {
     let mut fields = node.table()?;
     let target = fields.need("target", "what the track drives, such as \"puppets[0].rotate_deg\"", target);
-    let easing = fields.optional("easing", Easing::Linear, |n| {
-        n.choice(&[("linear", Easing::Linear), ("smooth", Easing::Smooth), ("step", Easing::Step)])
-    });
+    let easing = fields.optional(
+        "easing",
+        "how values go from key to key: evenly, at rest at each key, or in steps; without it linear",
+        Easing::Linear,
+        |n| n.choice(&[("linear", Easing::Linear), ("smooth", Easing::Smooth), ("step", Easing::Step)]),
+    );
     let keys = fields.need("keys", "at least one { t = seconds, value = … }", |n| {
         let items = n.array(limits::KEYS)?;
         if items.is_empty() {

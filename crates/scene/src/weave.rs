@@ -25,14 +25,24 @@ impl Weave {
     pub fn read(node: &Node) -> Option<Self> {
         let mut fields = node.table()?;
         let share = "is between 0 and 1";
-        let base = fields.optional("base", [0.8; 3], |n| {
-            n.rgb(|x| x.number_in(0.0..=1.0, "an albedo is between 0 and 1"))
+        let base =
+            fields.optional("base", "mean albedo, a number or [r, g, b]; without it 0.8", [0.8; 3], |n| {
+                n.rgb(|x| x.number_in(0.0..=1.0, "an albedo is between 0 and 1"))
+            });
+        let threads = fields.optional("threads", "threads across the width; without it 480", 480, |n| {
+            n.integer_in(1..=2000, "threads across the width are 1 to 2000")
         });
-        let threads = fields
-            .optional("threads", 480, |n| n.integer_in(1..=2000, "threads across the width are 1 to 2000"));
-        let contrast = fields.optional("contrast", 0.08, |n| n.number_in(0.0..=1.0, share));
-        let vignette = fields.optional("vignette", 0.0, |n| n.number_in(0.0..=1.0, share));
-        let seed = fields.optional("seed", 1, |n| n.integer_in(0.., "a seed is a whole number from 0"));
+        let contrast =
+            fields.optional("contrast", "how much threads and gaps differ; without it 0.08", 0.08, |n| {
+                n.number_in(0.0..=1.0, share)
+            });
+        let vignette =
+            fields.optional("vignette", "how much darker the corners are; without it 0", 0.0, |n| {
+                n.number_in(0.0..=1.0, share)
+            });
+        let seed = fields.optional("seed", "which cloth; without it 1", 1, |n| {
+            n.integer_in(0.., "a seed is a whole number from 0")
+        });
         fields.done();
         Some(Self {
             base: base?,

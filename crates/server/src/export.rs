@@ -1,5 +1,6 @@
 //! Answers as a table: one tidy row a trial.
 
+use crate::events::events_table;
 use crate::participants::{participants_table, status, verdicts};
 use crate::selection::Selection;
 use crate::table::{Table, codebook_of};
@@ -84,7 +85,11 @@ pub async fn responses_table(store: &Store, selection: &Selection) -> Result<Tab
 /// # Errors
 /// The store cannot be read, or the file cannot be put together.
 pub async fn spreadsheet(store: &Store, selection: &Selection) -> Result<Vec<u8>, ExportError> {
-    let tables = [responses_table(store, selection).await?, participants_table(store, selection).await?];
+    let tables = [
+        responses_table(store, selection).await?,
+        participants_table(store, selection).await?,
+        events_table(store, selection).await?,
+    ];
     let written = tokio::task::spawn_blocking(move || workbook(&tables)).await;
     Ok(written
         .map_err(|e| ExportError::Workbook(e.to_string()))?

@@ -149,6 +149,18 @@ fn bearer(headers: &HeaderMap) -> Option<&str> {
     scheme.eq_ignore_ascii_case("bearer").then(|| token.trim())
 }
 
+/// The SHA-256 of the token that a request holds.
+pub(crate) struct Token(pub(crate) String);
+
+impl<S: Send + Sync> FromRequestParts<S> for Token {
+    type Rejection = Box<Problem>;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Box<Problem>> {
+        let unknown = || Problem::new(ProblemCode::Unauthorized, "The request holds no token.");
+        bearer(&parts.headers).map(|token| Token(sha256_hex(token.as_bytes()))).ok_or_else(unknown)
+    }
+}
+
 /// The value of one cookie.
 pub(crate) fn cookie<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
     headers

@@ -1,18 +1,20 @@
 //! Where study files, scenes and pictures are read from: the data folder first, then what is built in.
 
+use crate::check;
 use crate::error::StudyFileError;
-use crate::render;
+use crate::remembered::{Known, Remembered, SceneFacts};
 use kelir_scene::{Assets, Scene};
-use kelir_study::{Condition, Kind, Problem, StudyDefinition, StudyErrors};
+use kelir_store::sha256_hex;
+use kelir_study::{Problem, StudyDefinition, StudyErrors};
 use rust_embed::RustEmbed;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 #[derive(RustEmbed)]
 #[folder = "$CARGO_MANIFEST_DIR/../../stimuli"]
-struct BuiltIn;
+pub(crate) struct BuiltIn;
 
 /// Files laid out like `stimuli/`: `studies/x.toml`, `scenes/y.toml`, `puppets/…`. A file of the data folder hides a
 /// built-in one of the same path.
@@ -21,21 +23,26 @@ pub struct Library {
     folder: PathBuf,
     /// What was learnt of scenes that were read: reading one rasterises its puppets, which takes a while.
     known: Arc<Mutex<HashMap<String, SceneFacts>>>,
-}
-
-/// What a study needs to know of a scene.
-#[derive(Clone, Debug)]
-pub(crate) struct SceneFacts {
-    /// Hash over its values and files.
-    pub(crate) sha256: String,
-    /// Whether it has a timeline.
-    pub(crate) moves: bool,
+    /// What earlier starts learnt, where this one may keep it.
+    remembered: Option<Arc<Mutex<Remembered>>>,
 }
 
 impl Library {
     /// The library of a data folder.
     pub fn new(folder: &Path) -> Library {
-        Library { folder: folder.to_owned(), known: Arc::default() }
+        Library { folder: folder.to_owned(), known: Arc::default(), remembered: None }
+    }
+
+    /// The library of a server's data folder, which keeps in it what it learns of scenes.
+    pub(crate) fn remembering(folder: &Path) -> Library {
+        let remembered = Some(Arc::new(Mutex::new(Remembered::load(folder))));
+        Library { remembered, ..Library::new(folder) }
+    }
+
+    /// What ships inside the binary alone.
+    pub fn built_in() -> Library {
+        // No folder has an empty path.
+        Library::new(Path::new(""))
     }
 
     /// The bytes at a '/'-separated path below the library's root; `..` may not leave it.
@@ -84,65 +91,33 @@ impl Library {
     /// # Errors
     /// It cannot be read, or everything that is wrong with it.
     pub fn study(&self, path: &str) -> Result<StudyDefinition, StudyFileError> {
+        self.checked(path, false)
+    }
+
+    /// As [`Library::study`], and tries each picture in a small size: what this calls good can be made.
+    ///
+    /// # Errors
+    /// It cannot be read, or everything that is wrong with it.
+    pub fn rehearsed(&self, path: &str) -> Result<StudyDefinition, StudyFileError> {
+        self.checked(path, true)
+    }
+
+    fn checked(&self, path: &str, thorough: bool) -> Result<StudyDefinition, StudyFileError> {
         let unreadable = |source| StudyFileError::Unreadable { path: PathBuf::from(path), source };
         let bytes = self.read(path).map_err(unreadable)?;
         let text = String::from_utf8(bytes)
             .map_err(|_| unreadable(io::Error::new(ErrorKind::InvalidData, "the file is no UTF-8 text")))?;
-        let study = StudyDefinition::parse(path, &text)?;
-        let problems = self.problems_around(path, &study);
-        if problems.is_empty() { Ok(study) } else { Err(StudyErrors(problems).into()) }
-    }
-
-    /// What is wrong with what a study names.
-    fn problems_around(&self, file: &str, study: &StudyDefinition) -> Vec<Problem> {
-        let mut problems = Vec::new();
-        let mut problem = |field: String, value: Option<&str>, rule: String| {
-            let value = value.map(|v| format!("{v:?}"));
-            problems.push(Problem { file: file.to_owned(), field, value, rule });
-        };
-        for (name, condition) in &study.conditions {
-            let field = format!("conditions.{name}");
-            match condition {
-                Condition::Rendered { technique, knobs, camera } => {
-                    if let Err(rule) = render::technique(technique, knobs) {
-                        problem(field.clone(), None, rule);
-                    }
-                    if let Some(Err(rule)) = camera.as_ref().map(render::camera) {
-                        problem(format!("{field}.camera"), None, rule);
-                    }
-                }
-                Condition::Files { files } => {
-                    for (pair, path) in files {
-                        if let Err(error) = self.read(&beside(file, path)) {
-                            problem(format!("{field}.files.{pair}"), Some(path), error.to_string());
-                        }
-                    }
-                }
+        let (study, mut problems) = StudyDefinition::parse_as_far(path, &text);
+        if let Some(study) = &study {
+            problems.extend(check::problems_around(self, path, study));
+            if thorough && study.size != [0, 0] {
+                problems.extend(check::problems_drawing(self, path, study));
             }
         }
-        let (mut wrong, mut refused) = (Vec::new(), BTreeSet::new());
-        for (i, block) in study.blocks.iter().enumerate() {
-            for (j, pair) in block.items.iter().enumerate() {
-                let Some(named) = &pair.scene else { continue };
-                let field = format!("blocks[{i}].{}[{j}].scene", block.items_key);
-                let path = beside(file, named);
-                let moves = match self.scene_facts(&path) {
-                    Ok(facts) => facts.moves,
-                    Err(found) => {
-                        // Its problems are told once, however many pairs show it.
-                        if refused.insert(path) {
-                            wrong.extend(found);
-                        }
-                        continue;
-                    }
-                };
-                if !moves && block.kind == Kind::Animation {
-                    problem(field, Some(named), "has no [timeline]; the block shows animations".to_owned());
-                }
-            }
+        match study {
+            Some(study) if problems.is_empty() => Ok(study),
+            _ => Err(StudyErrors(problems).into()),
         }
-        problems.extend(wrong);
-        problems
     }
 
     /// What there is to know of the scene at a path of the library, as it was when it was first read.
@@ -151,9 +126,30 @@ impl Library {
         if let Some(facts) = known().get(path) {
             return Ok(facts.clone());
         }
-        let scene = self.scene(path)?;
-        let facts = SceneFacts { sha256: scene.sha256().to_owned(), moves: scene.timeline().is_some() };
+        let facts = match self.recalled(path) {
+            Some(facts) => facts,
+            None => self.learnt(path)?,
+        };
         known().insert(path.to_owned(), facts.clone());
+        Ok(facts)
+    }
+
+    /// What an earlier start learnt of a scene whose files are still the same.
+    fn recalled(&self, path: &str) -> Option<SceneFacts> {
+        let remembered = self.remembered.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner);
+        remembered.facts(path, |file| self.read(file).ok().map(|bytes| sha256_hex(&bytes)))
+    }
+
+    /// What a scene is, read anew.
+    fn learnt(&self, path: &str) -> Result<SceneFacts, Vec<Problem>> {
+        let reading = Reading { library: self, files: Mutex::default() };
+        let scene = self.scene_by(path, &reading)?;
+        let facts = SceneFacts { sha256: scene.sha256().to_owned(), moves: scene.timeline().is_some() };
+        if let Some(remembered) = &self.remembered {
+            let files = reading.files.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let known = Known { files, facts: facts.clone() };
+            remembered.lock().unwrap_or_else(PoisonError::into_inner).keep(&self.folder, path, known);
+        }
         Ok(facts)
     }
 
@@ -162,13 +158,17 @@ impl Library {
     /// # Errors
     /// Everything that is wrong with it.
     pub fn scene(&self, path: &str) -> Result<Scene, Vec<Problem>> {
+        self.scene_by(path, self)
+    }
+
+    fn scene_by(&self, path: &str, files: &dyn Assets) -> Result<Scene, Vec<Problem>> {
         let whole = |rule: String| {
             vec![Problem { file: path.to_owned(), field: "scene".to_owned(), value: None, rule }]
         };
-        let bytes = self.read(path).map_err(|error| whole(error.to_string()))?;
+        let bytes = files.read(path).map_err(|error| whole(error.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|_| whole("is no UTF-8 text".to_owned()))?;
         let path = normalise(path).ok_or_else(|| whole("leads out of the study's folders".to_owned()))?;
-        Scene::parse(&path, &text, self).map_err(|errors| {
+        Scene::parse(&path, &text, files).map_err(|errors| {
             let problems = errors.problems().iter().cloned();
             problems.map(|p| Problem { file: p.file, field: p.field, value: p.value, rule: p.rule }).collect()
         })
@@ -181,31 +181,26 @@ impl Assets for Library {
     }
 }
 
+/// The library, noting what is read from it.
+struct Reading<'a> {
+    library: &'a Library,
+    files: Mutex<BTreeMap<String, String>>,
+}
+
+impl Assets for Reading<'_> {
+    fn read(&self, path: &str) -> io::Result<Vec<u8>> {
+        let bytes = self.library.read(path)?;
+        let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        files.insert(path.to_owned(), sha256_hex(&bytes));
+        Ok(bytes)
+    }
+}
+
 /// The library path of what a file names relative to itself.
 pub(crate) fn beside(file: &str, path: &str) -> String {
     match file.rsplit_once('/') {
         Some((folder, _)) => format!("{folder}/{path}"),
         None => path.to_owned(),
-    }
-}
-
-/// Reads and checks any study file with all that it names: files are looked for below the parent of the study's folder when
-/// that is called `studies`, else below the folder itself, and then among the built-in ones.
-///
-/// # Errors
-/// It cannot be read, or everything that is wrong with it.
-pub fn check_study(file: &Path) -> Result<StudyDefinition, StudyFileError> {
-    let unreadable = |source| StudyFileError::Unreadable { path: file.to_owned(), source };
-    let whole = file.canonicalize().map_err(unreadable)?;
-    let parts = (whole.parent(), whole.file_name().and_then(|name| name.to_str()));
-    let (Some(folder), Some(name)) = parts else {
-        return Err(unreadable(io::Error::new(ErrorKind::InvalidInput, "is no file with a readable name")));
-    };
-    match folder.parent() {
-        Some(root) if folder.file_name().is_some_and(|name| name == "studies") => {
-            Library::new(root).study(&format!("studies/{name}"))
-        }
-        _ => Library::new(folder).study(name),
     }
 }
 

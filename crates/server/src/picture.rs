@@ -1,8 +1,35 @@
-//! What a picture file is, read from its head: nothing is decoded.
+//! Whether a picture file can be shown: what it is by its content, and that all of it is there.
 
 /// Media type and size [width, height] of a PNG or JPEG; `None` for anything else.
 pub(crate) fn describe(bytes: &[u8]) -> Option<(&'static str, [u32; 2])> {
     png(bytes).map(|size| ("image/png", size)).or_else(|| jpeg(bytes).map(|size| ("image/jpeg", size)))
+}
+
+/// Every rule that a picture file breaks, each as a sentence's end: its type, its name's ending, its size, and that it can be decoded to its end.
+pub(crate) fn broken(path: &str, bytes: &[u8], size: [u32; 2]) -> Vec<String> {
+    let Some((media_type, _)) = describe(bytes) else { return vec!["is neither PNG nor JPEG".to_owned()] };
+    let mut rules = Vec::new();
+    let ending = path.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+    let (name, named) = match media_type {
+        "image/png" => ("PNG", ending == "png"),
+        _ => ("JPEG", ending == "jpg" || ending == "jpeg"),
+    };
+    if !named {
+        rules.push(format!("is a {name} by its content; its name ends in .{ending}"));
+    }
+    // Decoders fill in what a JPEG lacks: its end is asked for apart.
+    let cut =
+        media_type == "image/jpeg" && !bytes.windows(2).rev().take(64 << 10).any(|pair| pair == [0xff, 0xd9]);
+    match kelir_store::picture_size(bytes) {
+        Err(rule) => rules.push(rule),
+        Ok(_) if cut => rules.push("ends before its picture does".to_owned()),
+        // A size that was refused is told of by itself.
+        Ok([w, h]) if [w, h] != size && size != [0, 0] => {
+            rules.push(format!("has {w} × {h} pixels; the study's size is {} × {}", size[0], size[1]));
+        }
+        Ok(_) => {}
+    }
+    rules
 }
 
 fn png(bytes: &[u8]) -> Option<[u32; 2]> {

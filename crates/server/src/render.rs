@@ -4,7 +4,8 @@ use crate::library::Library;
 use crate::making::{Made, Maker, Task};
 use kelir_render::camera::Camera;
 use kelir_render::job::{Job, Output, run};
-use kelir_render::{Backend, Pixel, Technique, View};
+use kelir_render::{Backend, Pixel, RenderError, Technique, View};
+use kelir_scene::Scene;
 use kelir_study::{Condition, Kind, Problem};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -62,6 +63,15 @@ impl Maker for RenderMaker {
             attachments: stimulus.attachments.into_iter().map(|blob| (blob.media_type, blob.bytes)).collect(),
             provenance,
         })
+    }
+}
+
+/// Tries a task in a small size, by the path that makes it; the scene comes back for the next.
+pub(crate) fn rehearse(task: &Task<'_>, scene: Scene) -> (Scene, Result<(), RenderError>) {
+    match job(task) {
+        Ok(job) => kelir_render::job::rehearse(job.with_scene(scene)),
+        // What is wrong with the condition or its scene's name has been told already.
+        Err(_) => (scene, Ok(())),
     }
 }
 

@@ -1,8 +1,10 @@
 //! The table of responses: one tidy row a trial. What each column is, is said by the records here and by the answers of each kind of trial;
 //! the codebook, the header and the cells are made from these.
 
+mod events;
 mod participants;
 
+pub use events::{EventSession, event_rows, events_codebook};
 pub use participants::{ParticipantColumns, participants_codebook};
 
 use crate::definition::{Block, Kind, StudyDefinition};
@@ -207,7 +209,7 @@ const FIRST: [&str; 41] = [
 ];
 
 /// What pages send and rows say in columns of their own.
-const ELSEWHERE: [&str; 3] = ["choice", "viewport", "frames"];
+const ELSEWHERE: [&str; 4] = ["choice", "viewport", "frames", "events"];
 
 /// The path of a page's field as a column: `requested_ms.first` is `requested_ms_first`.
 fn flat(name: &str) -> String {

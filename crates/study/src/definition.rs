@@ -2,6 +2,7 @@
 
 use crate::adaptive::Adaptive;
 use crate::conduct::{ResponseRules, SessionRules};
+use crate::languages::{self, Translation};
 use crate::trials::{TrialKind, TrialName};
 use crate::visits::Flag;
 use kelir_stats::psychometric::{Lapse, Sigmoid};
@@ -50,6 +51,12 @@ pub struct StudyDefinition {
     /// Whose visit is whose.
     #[serde(default, skip_serializing_if = "is_default")]
     pub session: SessionRules,
+    /// The language of its texts, as a BCP 47 tag.
+    #[serde(default = "languages::unnamed", skip_serializing_if = "languages::is_unnamed")]
+    pub language: String,
+    /// What participants read in other languages, by tag.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub translations: BTreeMap<String, Translation>,
 }
 
 /// The code at the end and where it leads.
@@ -62,8 +69,22 @@ pub struct Completion {
     pub redirect: Option<String>,
 }
 
+/// Parameters of links by which recruiting panels (Prolific, MTurk, SONA) name people, studies and visits; any of them may stand in a redirect.
+pub const PANEL_PARAMS: [&str; 10] = [
+    "PROLIFIC_PID",
+    "STUDY_ID",
+    "SESSION_ID",
+    "workerId",
+    "assignmentId",
+    "hitId",
+    "turkSubmitTo",
+    "survey_code",
+    "subject_id",
+    "id",
+];
+
 /// What participants read; each text is a list of plain paragraphs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Texts {
     /// First page.
     pub welcome: Vec<String>,
@@ -293,6 +314,28 @@ impl Block {
 }
 
 impl Completion {
+    /// The names in brackets, in order.
+    ///
+    /// # Errors
+    /// The rule that a bracket breaks.
+    pub(crate) fn placeholders(address: &str) -> Result<Vec<&str>, String> {
+        let mut names = Vec::new();
+        let mut rest = address;
+        while let Some(at) = rest.find(['[', ']']) {
+            let (bracket, after) = rest[at..].split_at(1);
+            let name = after
+                .split_once(']')
+                .map(|(name, _)| name)
+                .filter(|name| bracket == "[" && !name.contains('['));
+            let Some(name) = name else {
+                return Err(format!("{bracket} stands alone; a placeholder is [NAME]"));
+            };
+            names.push(name);
+            rest = &after[name.len() + 1..];
+        }
+        Ok(names)
+    }
+
     /// The address to go on to, with `[CODE]` and each `[NAME]` of `params` filled in, percent-encoded; a name that is not
     /// among them becomes empty.
     pub fn redirect_to(&self, code: &str, params: &BTreeMap<String, String>) -> Option<String> {

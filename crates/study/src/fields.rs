@@ -35,6 +35,13 @@ fn shorten(value: &Value) -> String {
     if text.chars().count() <= 80 { text } else { text.chars().take(77).chain("...".chars()).collect() }
 }
 
+/// Told which keys are asked for, whether each may not be missing, and its rule: the reference page is made of it.
+#[cfg(not(test))]
+fn noted(_path: &str, _asked: Option<(bool, &str)>) {}
+
+#[cfg(test)]
+use crate::reference::noted;
+
 /// One table of the file; its `finish` reports the keys that nobody asked for.
 pub(crate) struct Fields<'a> {
     gatherer: &'a Gatherer<'a>,
@@ -65,10 +72,12 @@ impl<'a> Fields<'a> {
 
     /// Whether the table has this key.
     pub(crate) fn has(&self, key: &str) -> bool {
+        noted(&self.path_of(key), None);
         self.table.contains_key(key)
     }
 
     pub(crate) fn raw(&mut self, key: &'static str) -> Option<&'a Value> {
+        noted(&self.path_of(key), None);
         if !self.asked.contains(&key) {
             self.asked.push(key);
         }
@@ -82,6 +91,7 @@ impl<'a> Fields<'a> {
         rule: &str,
         read: impl FnOnce(&'a Value) -> Option<T>,
     ) -> Option<T> {
+        noted(&self.path_of(key), Some((false, rule)));
         let value = self.raw(key)?;
         let read = read(value);
         if read.is_none() {
@@ -99,10 +109,13 @@ impl<'a> Fields<'a> {
     ) -> Option<T> {
         if !self.table.contains_key(key) {
             self.raw(key);
+            noted(&self.path_of(key), Some((true, rule)));
             self.gatherer.report(&self.path_of(key), None, format!("missing; must be {rule}"));
             return None;
         }
-        self.get(key, rule, read)
+        let read = self.get(key, rule, read);
+        noted(&self.path_of(key), Some((true, rule)));
+        read
     }
 
     /// The table under `key`; a problem where it is something else.

@@ -1,12 +1,14 @@
 //! From a study file's text to a [`StudyDefinition`], or to every problem it has.
 
 mod adaptive;
+mod completion;
 mod conditions;
 mod psychometric;
 
 use crate::conduct::{NEWEST_EDITION, ResponseRules, SessionRules};
-use crate::definition::{Block, Completion, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts};
+use crate::definition::{Block, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts};
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
+use crate::languages;
 use crate::problems::{Problem, StudyErrors};
 use crate::trials::TrialKind;
 use crate::visits::Flag;
@@ -16,19 +18,31 @@ use toml::{Table, Value};
 /// Two stimuli of width w and a gap of w/20 fit a 1280-pixel window with 16 pixels of margin on either side.
 const MAX_WIDTH: i64 = 608;
 
+pub(crate) const TITLE: &str = "a text of 1 to 200 characters";
+pub(crate) const QUESTION: &str = "a text of 1 to 300 characters";
+
 impl StudyDefinition {
     /// Reads a study file. `file` names it in messages; its stem is the study's id.
     ///
     /// # Errors
     /// Every problem of the file, in one list.
     pub fn parse(file: &str, source: &str) -> Result<StudyDefinition, StudyErrors> {
-        let table = table(file, source)?;
-        let gatherer = Gatherer::new(file);
-        let study = read_study(&gatherer, file, &table);
-        match (study, gatherer.into_problems()) {
+        match StudyDefinition::parse_as_far(file, source) {
             (Some(study), problems) if problems.is_empty() => Ok(study),
             (_, problems) => Err(StudyErrors(problems)),
         }
+    }
+
+    /// Reads a study file as far as it goes: what is wrong with it and, where every block and item could be read, a study whose other refused
+    /// values stand at a default. It is for looking at what the file names, and must not be served while there are problems.
+    pub fn parse_as_far(file: &str, source: &str) -> (Option<StudyDefinition>, Vec<Problem>) {
+        let table = match table(file, source) {
+            Ok(table) => table,
+            Err(errors) => return (None, errors.0),
+        };
+        let gatherer = Gatherer::new(file);
+        let study = read_study(&gatherer, file, &table).filter(|study| whole(study, &table));
+        (study, gatherer.into_problems())
     }
 }
 
@@ -42,6 +56,15 @@ pub(crate) fn table(file: &str, source: &str) -> Result<Table, StudyErrors> {
         let rule = format!("is no TOML: {}", error.message());
         StudyErrors(vec![Problem { file: file.to_owned(), field, value: None, rule }])
     })
+}
+
+/// Whether every block of the file with every item was read, so that their places are those of the file.
+fn whole(study: &StudyDefinition, table: &Table) -> bool {
+    let count = |value: Option<&Value>| value.and_then(Value::as_array).map_or(0, Vec::len);
+    let blocks = table.get("blocks").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let items = |block: &Block, value: &Value| block.items.len() == count(value.get(block.items_key.0));
+    blocks.len() == study.blocks.len()
+        && study.blocks.iter().zip(blocks).all(|(block, value)| items(block, value))
 }
 
 fn position(source: &str, offset: usize) -> String {
@@ -58,8 +81,8 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
         gatherer.report("file name", Some(&Value::String(id.clone())), format!("must be {IDENTIFIER}"));
     }
     let mut fields = Fields::new(gatherer, "", table);
-    let title = fields.need("title", "a text of 1 to 200 characters", |v| text(v, 200));
-    let question = fields.need("question", "a text of 1 to 300 characters", |v| text(v, 300));
+    let title = fields.need("title", TITLE, |v| text(v, 200));
+    let question = fields.need("question", QUESTION, |v| text(v, 300));
     let seed = fields.need("seed", "an integer from 0 to 2^53", |v| integer(v, 0, 1 << 53));
     let size = fields.need(
         "size",
@@ -82,49 +105,39 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
         .or_else(|| fields_default(table, "edition", 1));
     let response = ResponseRules::read(gatherer, &mut fields);
     let session = SessionRules::read(gatherer, &mut fields);
-    let completion = read_completion(gatherer, &mut fields);
+    let completion = completion::read(gatherer, &mut fields, session.as_ref());
     let screening = read_screening(gatherer, &mut fields);
     let texts = read_texts(gatherer, &mut fields);
+    let language = languages::read_language(&mut fields);
+    let translations = languages::read_translations(gatherer, &mut fields, language.as_deref());
     let blocks = read_blocks(gatherer, &mut fields);
     let conditions = conditions::read(gatherer, &mut fields, &blocks);
     fields.finish();
     Some(StudyDefinition {
         id,
-        title: title?,
-        question: question?,
-        seed: seed?,
-        size: size?,
-        surround: surround?,
-        estimated_minutes: u32::try_from(estimated_minutes?).ok()?,
-        idle_minutes: u32::try_from(idle_minutes?).ok()?,
-        completion: completion?,
-        texts: texts?,
+        title: title.unwrap_or_default(),
+        question: question.unwrap_or_default(),
+        seed: seed.unwrap_or_default(),
+        size: size.unwrap_or_default(),
+        surround: surround.unwrap_or_default(),
+        estimated_minutes: u32::try_from(estimated_minutes.unwrap_or_default()).ok()?,
+        idle_minutes: u32::try_from(idle_minutes.unwrap_or_default()).ok()?,
+        completion: completion.unwrap_or_default(),
+        texts: texts.unwrap_or_default(),
         conditions,
         blocks,
-        screening: screening?,
+        screening: screening.unwrap_or_default(),
         edition: u32::try_from(edition?).ok()?,
         response: response?,
         session: session?,
+        language: language?,
+        translations: translations?,
     })
 }
 
 /// The default of an absent key; a key that is there and wrong has been reported already.
 fn fields_default<T>(table: &Table, key: &str, default: T) -> Option<T> {
     (!table.contains_key(key)).then_some(default)
-}
-
-fn read_completion(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Completion> {
-    let Some(value) = fields.raw("completion") else { return Some(Completion::default()) };
-    let mut fields = Fields::of(gatherer, "completion".to_owned(), value)?;
-    let code = fields.get("code", "a code of 1 to 64 letters, digits, - and _", |v| {
-        text(v, 64).filter(|s| s.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_'))
-    });
-    let redirect =
-        fields.get("redirect", "an https:// address of at most 2000 characters, without blanks", |v| {
-            text(v, 2000).filter(|s| s.starts_with("https://") && !s.contains(char::is_whitespace))
-        });
-    fields.finish();
-    Some(Completion { code, redirect })
 }
 
 fn read_screening(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Screening> {
@@ -154,10 +167,10 @@ fn read_screening(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Sc
     })
 }
 
-fn read_texts(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Texts> {
+pub(crate) fn read_texts(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Texts> {
     let value =
         fields.need("texts", "a table with welcome, consent, instructions, debriefing and thanks", Some)?;
-    let mut fields = Fields::of(gatherer, "texts".to_owned(), value)?;
+    let mut fields = Fields::of(gatherer, fields.path_of("texts"), value)?;
     let mut read = |key| {
         fields.need(
             key,

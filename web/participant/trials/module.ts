@@ -1,6 +1,7 @@
 /** What a kind of trial is to the rest of the page: one folder whose `index.ts` exports one `TrialModule`. */
 import { type JsPsych, type JsPsychPlugin, ParameterType, type PluginInfo } from "jspsych";
 import type { Study, Trial } from "../api.ts";
+import type { Rules } from "../inputs/guard.ts";
 import type { Pictures } from "../stimuli.ts";
 import type { Plain } from "../words/index.ts";
 
@@ -9,8 +10,8 @@ export interface TrialModule {
   readonly plugin: (new (jsPsych: JsPsych) => JsPsychPlugin<never>) & { readonly info: PluginInfo };
   /** The names of its stimuli in a trial's `shown`. */
   readonly roles: readonly string[];
-  /** What the page of instructions shows of it. */
-  readonly legend: Legend;
+  /** What the page of instructions shows of it; of a study where that depends on how its pictures would stand now. */
+  readonly legend: Legend | ((study: Study) => Legend);
   /** The plugin's parameters for one trial. */
   parameters(given: Given): Record<string, unknown>;
   /** Why a display that redraws every `periodMs` (null: not known) can't show the trial as it is asked for; null where it can. */
@@ -21,6 +22,10 @@ export interface TrialModule {
 export interface Legend {
   /** Said only where a study has several kinds of trial. */
   title: Plain;
+  /** How an answer is given with a finger alone, and with a mouse and keys. */
+  how?: { touch: Plain; click: Plain };
+  /** Whether the answers stand below each other. */
+  stacked?: boolean;
   /** The keys of each answer, in the order in which they lie on the keyboard. */
   answers: ReadonlyArray<{ keys: readonly string[]; label: Plain }>;
 }
@@ -58,6 +63,10 @@ export const commonParameters = <const>{
   on_onset: { type: ParameterType.FUNCTION, default: () => {} },
   /** Called with the trial's data at the choice, before its outline is shown: from then on it must not be lost. */
   on_choice: { type: ParameterType.FUNCTION, default: () => {} },
+  /** When an answer counts: `min_visible_ms`, `min_gap_ms`. */
+  rules: { type: ParameterType.OBJECT, default: { min_visible_ms: 0, min_gap_ms: 0 } },
+  /** Whether a script may answer. */
+  simulated: { type: ParameterType.BOOL, default: false },
   /** How long the choice keeps its outline, ms. */
   feedback_ms: { type: ParameterType.INT, default: 150 },
 };
@@ -83,12 +92,26 @@ export const commonData = <const>{
   hidden_ms: { type: ParameterType.FLOAT },
   /** The shortest time that any of the trial's stimuli was visible before the answer, ms. */
   min_visible_ms: { type: ParameterType.FLOAT },
+  /** 1 where the stimuli stood otherwise at onset, and then how. */
+  geometry_changed: { type: ParameterType.INT },
+  at_onset: { type: ParameterType.OBJECT },
+  /** What happened to the page since the last answer, and how much more there was. */
+  events: { type: ParameterType.OBJECT, array: true },
+  events_dropped: { type: ParameterType.INT },
+  /** Of animations only: frames that were never shown, or too late. */
+  missed_frames: { type: ParameterType.INT },
   /** Of animations only: how each was played, by role. */
   frames: { type: ParameterType.OBJECT },
 };
 
+/** Parameters of a trial that a script answers. */
+export const SIMULATED = { simulated: true, rules: { min_visible_ms: 0, min_gap_ms: 0 } };
+
+/** When an input counts in a study. */
+export const rulesOf = ({ response }: Pick<Study, "response">): Rules => ({ min_visible_ms: response?.min_visible_ms ?? 0, min_gap_ms: response?.min_gap_ms ?? 0 });
+
 /** Values of the common parameters. */
 export const common = ({ study, trial, position, load, refreshPeriod, onOnset, onChoice }: Given) => ({
   ...{ question: study.question, position, width: trial.width, height: trial.height },
-  ...{ load, refresh_period: refreshPeriod, on_onset: onOnset, on_choice: onChoice },
+  ...{ load, refresh_period: refreshPeriod, on_onset: onOnset, on_choice: onChoice, rules: rulesOf(study) },
 });

@@ -7,6 +7,12 @@ stopped-title = Die Studie wurde unterbrochen
 stopped = Auf dieser Seite ist etwas schiefgegangen. Hilft Neuladen nicht, öffnen Sie den Link bitte in einem anderen Browser.
 no-study-title = Diese Studie gibt es nicht
 no-study = Bitte prüfen Sie den Link, den Sie bekommen haben, oder fragen Sie die Person, die ihn Ihnen geschickt hat.
+finished-title = Diese Studie ist abgeschlossen
+finished = Mit diesem Link wurde sie schon abgeschlossen, und teilnehmen kann man einmal. Der Code steht in dem Browser, in dem sie abgeschlossen wurde.
+begun-elsewhere-title = Diese Studie ist begonnen
+begun-elsewhere = Mit diesem Link wurde sie schon begonnen, und teilnehmen kann man einmal. Bitte machen Sie in dem Browser weiter, in dem sie begonnen wurde.
+link-title = Dieser Link kann nicht verwendet werden
+link = Was der Link über Sie sagt, kann nicht gespeichert werden. Bitte fragen Sie die Person, die ihn Ihnen geschickt hat, nach einem anderen.
 moved-title = In einem anderen Tab fortgesetzt
 moved = Sie haben diese Studie in einem anderen Tab oder Fenster fortgesetzt. Dieses hier können Sie schließen.
 elsewhere-title = Diese Studie ist in einem anderen Tab geöffnet
@@ -26,6 +32,7 @@ consent-minutes =
     }
 consent-print = Diese Seite drucken
 consent-decline = Wenn Sie lieber nicht teilnehmen möchten, schließen Sie diese Seite: Es wurde nichts gespeichert.
+language-switch = Sprache
 consent-agree = Ich willige ein und nehme teil
 
 # Anleitung
@@ -38,6 +45,12 @@ key-left = linkes Bild
 key-right = rechtes Bild
 key-first = erstes
 key-second = zweites
+key-upper = oberes Bild
+key-lower = unteres Bild
+how-pair-touch = Berühren Sie das Bild, das Sie wählen.
+how-pair-click = Klicken Sie auf das Bild, das Sie wählen, oder drücken Sie seine Taste.
+how-interval-touch = Berühren Sie die Schaltfläche des Bildes, das Sie wählen.
+how-interval-click = Klicken Sie auf die Schaltfläche des Bildes, das Sie wählen, oder drücken Sie seine Taste.
 
 # Durchgänge
 position = { $number } von { $all }
@@ -53,7 +66,7 @@ refresh-unknown = Dieser Browser gibt nicht an, wie oft sein Bildschirm neu geze
 refresh-missed = Diese Studie zeigt etwas { $ms } ms lang, und dieser Bildschirm wird nur alle { NUMBER($period_ms, minimumFractionDigits: 1, maximumFractionDigits: 1) } ms neu gezeichnet.
 
 # Warten
-pictures-coming = Die nächsten Bilder sind unterwegs; bitte warten Sie einen Moment.
+pictures-coming = Die Bilder sind unterwegs: { $here } von { $of } sind da ({ NUMBER($mb, minimumFractionDigits: 1, maximumFractionDigits: 1) } MB).
 pictures-slow = Die Bilder brauchen länger. Es geht nichts verloren; es geht von selbst weiter.
 picture-missing = Im Plan dieser Studie steht ein Bild, das sie nicht hat.
 picture-refused = Der Server gibt ein Bild nicht heraus (Status { $status }).
@@ -107,3 +120,8 @@ answer-again = Eine Antwort konnte nicht gespeichert werden, deshalb sind ihre B
 too-old = Dieser Browser ist zu alt für diese Studie. Bitte öffnen Sie den Link in einem neueren: { $browsers } oder später.
 not-loaded = Diese Seite konnte nicht vollständig geladen werden. Bitte prüfen Sie die Verbindung und laden Sie sie neu.
 no-script = Diese Studie braucht JavaScript. Bitte schalten Sie es für diese Seite ein, oder öffnen Sie den Link in einem anderen Browser.
+
+# Eine Studie ausprobieren
+trying-preview = Vorschau: Nichts wird gespeichert.
+trying-pilot = Probelauf: Antworten werden gespeichert und in keiner Auswertung gezählt.
+trying-restart = Von vorn beginnen

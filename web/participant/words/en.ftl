@@ -7,6 +7,12 @@ stopped-title = The study has stopped
 stopped = Something in this page went wrong. If reloading does not help, please open the link in another browser.
 no-study-title = There is no such study
 no-study = Please check the link you were given, or ask the person who sent it to you.
+finished-title = This study has been finished
+finished = It has been finished with this link already, and can be taken once. Its code is shown in the browser where it was finished.
+begun-elsewhere-title = This study has been begun
+begun-elsewhere = It has been begun with this link already, and can be taken once. Please go on in the browser where it was begun.
+link-title = This link can't be used
+link = What the link says of you can't be stored. Please ask the person who sent it to you for another.
 moved-title = Continued in another tab
 moved = You went on with this study in another tab or window. You can close this one.
 elsewhere-title = This study is open in another tab
@@ -26,6 +32,7 @@ consent-minutes =
     }
 consent-print = Print this page
 consent-decline = If you would rather not take part, close this page: nothing has been stored.
+language-switch = Language
 consent-agree = I agree and take part
 
 # Instructions
@@ -38,6 +45,12 @@ key-left = left image
 key-right = right image
 key-first = first
 key-second = second
+key-upper = upper image
+key-lower = lower image
+how-pair-touch = Touch the picture that you choose.
+how-pair-click = Click the picture that you choose, or press its key.
+how-interval-touch = Touch the button of the picture that you choose.
+how-interval-click = Click the button of the picture that you choose, or press its key.
 
 # Trials
 position = { $number } of { $all }
@@ -53,7 +66,7 @@ refresh-unknown = This browser does not tell how often its display redraws, and 
 refresh-missed = This study shows something for { $ms } ms, and this display redraws only every { NUMBER($period_ms, minimumFractionDigits: 1, maximumFractionDigits: 1) } ms.
 
 # Waiting
-pictures-coming = The next pictures are on their way; please wait a moment.
+pictures-coming = The pictures are on their way: { $here } of { $of } are here ({ NUMBER($mb, minimumFractionDigits: 1, maximumFractionDigits: 1) } MB).
 pictures-slow = The pictures take longer to arrive. Nothing is lost; it goes on by itself.
 picture-missing = The plan of this study names a picture that it does not have.
 picture-refused = The server does not give out a picture (status { $status }).
@@ -107,3 +120,8 @@ answer-again = An answer could not be stored, so its pictures are here once more
 too-old = This browser is too old for this study. Please open the link in a newer one: { $browsers }, or later.
 not-loaded = This page could not be loaded in full. Please check the connection and reload it.
 no-script = This study needs JavaScript. Please switch it on for this page, or open the link in another browser.
+
+# Trying a study
+trying-preview = Preview: nothing is stored.
+trying-pilot = Pilot: answers are stored, and left out of every analysis.
+trying-restart = Start again

@@ -64,7 +64,7 @@ test("a kind that the page doesn't know: it says so before anything is asked, or
 test("a kind is added by its folder, and by nothing else", async (t) => {
   const web = mkdtempSync(join(tmpdir(), "kelir-kind-"));
   t.after(() => rmSync(web, { recursive: true }));
-  for (const part of ["participant", "console", "shared", "build.mjs", "package.json"]) cpSync(part, join(web, part), { recursive: true });
+  for (const part of ["participant", "console", "shared", "build.mjs", "browsers.json", "package.json"]) cpSync(part, join(web, part), { recursive: true });
   symlinkSync(resolve("node_modules"), join(web, "node_modules"));
   mkdirSync(join(web, "participant/trials/added"));
   const legend = '{ title: "Added", answers: [{ keys: ["←"], label: "this" }, { keys: ["→"], label: "that" }] }';
@@ -119,7 +119,7 @@ test("what was on the screen is stored: width, arrangement, and how long it was 
   assert.ok(first.hidden_ms >= 240 && Math.abs(first.min_visible_ms - (first.rt - first.hidden_ms)) < 0.01, JSON.stringify(first));
   assert.deepEqual([second.hidden_ms, second.min_visible_ms], [0, second.rt]);
   // An answer has these columns in this order, the additions apart.
-  const added = new Set(["css_width_px", "min_visible_ms"]);
+  const added = new Set(["css_width_px", "min_visible_ms", "geometry_changed", "events"]);
   const before = ["choice", "rt", "onset", "input", "scale", "arrangement", "device_pixel_ratio", "viewport", "refresh_hz", "hidden_ms", "time_elapsed", "trial_type", "plugin_version", "reload_count", "timestamp"];
   assert.deepEqual(Object.keys(first).filter((column) => !added.has(column)), before);
 });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { problem } from "../mock-server.ts";
-import { answer, begin, position, stored, visit } from "./visit.mjs";
+import { answer, begin, painted, position, stored, visit } from "./visit.mjs";
 
 test("a lost line: the sentence is calm and true, the study goes on, all arrives", async (t) => {
   let down = false;
@@ -51,7 +51,7 @@ test("pictures that are long in coming are announced", async (t) => {
   });
   await v.hook("consent-agree").click();
   await v.hook("start").click();
-  await v.page.getByText("The next pictures are on their way").waitFor();
+  await v.page.getByText(/The pictures are on their way: \D?\d\D* of \D*10\D* are here/).waitFor();
   await position(v.page, 0);
   assert.equal(await v.page.locator("#notice").textContent(), "");
 });
@@ -66,15 +66,26 @@ test("a lost acknowledgement costs nothing and doubles nothing", async (t) => {
   assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"], [2, "left"], [3, "left"], [4, "left"]]]);
 });
 
-test("an answer that the server refuses for good is kept and said, and no code is shown", async (t) => {
+test("a trial whose answer the server refuses is taken again; refused once more it is kept and said, and no code is shown", async (t) => {
   let refuse = true;
-  const errors = [{ pointer: "/rt", value: -1, rule: "must be a number from 0 to 86400000" }];
+  const errors = [{ pointer: "/choice", value: "left", rule: "must be otherwise" }];
   const [, body] = problem(422, "invalid_field", "The answer has a fault.", { errors });
   const v = await visit(t, { fault: ({ method, path }) => (refuse && method === "PUT" && path.endsWith("/trials/1") ? { status: 422, body } : null) });
   await begin(v);
-  await answer(v, 0, 5);
-  await v.page.getByText("One answer could not be stored").waitFor();
-  await v.page.getByText("The answer has a fault. /rt = -1: must be a number from 0 to 86400000.").waitFor();
+  // The refusal may come before the next trial or during it.
+  const seen = [];
+  const missing = v.page.getByText("One answer could not be stored");
+  while (!(await missing.isVisible())) {
+    const at = (await v.page.locator(".position").allTextContents())[0];
+    if (at === undefined || at === seen.at(-1)?.at) continue;
+    await painted(v.page);
+    seen.push({ at, again: await v.page.getByText("its pictures are here once more. Please choose again.").isVisible() });
+    await v.hook("choice-left").click();
+    await v.page.waitForTimeout(300);
+  }
+  assert.deepEqual(seen.map(({ at }) => at).sort(), ["1 of 5", "2 of 5", "2 of 5", "3 of 5", "4 of 5", "5 of 5"]);
+  assert.equal(seen.filter(({ at }) => at === "2 of 5")[1].again, true);
+  await v.page.getByText("The answer has a fault. /choice = \"left\": must be otherwise.").waitFor();
   assert.equal(await v.hook("completion-code").count(), 0);
   refuse = false;
   await v.page.getByRole("button", { name: "Try again" }).click();

@@ -11,6 +11,8 @@ import { material, study } from "../mock-study.ts";
 import { launch, sizes } from "./chromium.mjs";
 
 const dist = mkdtempSync(join(tmpdir(), "kelir-web-"));
+/** Where the bundle that the tests build is. */
+export const bundle = dist;
 let browser;
 before(async () => {
   execFileSync("node", ["build.mjs", dist]);
@@ -22,10 +24,11 @@ after(async () => {
 });
 
 /** A mock server and a page on it; errors on the page, content-policy ones too, fail the test. */
-export async function visit(t, { options = sizes.desktop, query = "", chromium = browser, stuff = material(), ...server } = {}) {
+export async function visit(t, { options = sizes.desktop, query = "", chromium = browser, stuff = material(), init, ...server } = {}) {
   const mock = await startMock({ dist, results: results(stuff), stuff, ...server });
   const context = await chromium.newContext(options);
   const page = await context.newPage();
+  if (init !== undefined) await page.addInitScript(...init);
   const problems = [];
   page.on("pageerror", (error) => problems.push(error.message));
   page.on("console", (message) => message.type() === "error" && !/Failed to load resource/.test(message.text()) && problems.push(message.text()));
@@ -35,7 +38,7 @@ export async function visit(t, { options = sizes.desktop, query = "", chromium =
     assert.deepEqual(problems, []);
   });
   const url = `${mock.url}/study/${study.id}${query}`;
-  await page.goto(url);
+  await page.goto(url, { waitUntil: "commit" });
   return { mock, context, page, problems, url, hook: (id) => page.getByTestId(id) };
 }
 

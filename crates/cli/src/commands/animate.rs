@@ -11,8 +11,7 @@ use kelir_render::{Stats, file};
 use serde::Serialize;
 use serde_json::json;
 
-use super::drawing::{Drawing, ExposureName, StatsFormat, render_error};
-use crate::output::print;
+use super::drawing::{Drawing, ExposureName, Told, render_error};
 use crate::{bad_input, progress};
 
 /// Arguments of `kelir animate`.
@@ -20,6 +19,8 @@ use crate::{bad_input, progress};
 pub struct Args {
     #[command(flatten)]
     drawing: Drawing,
+    #[command(flatten)]
+    told: Told,
     /// What is shown as white.
     #[arg(long, value_enum, default_value = "timeline")]
     exposure: ExposureName,
@@ -111,21 +112,17 @@ pub fn run(args: Args) -> Result<()> {
             )?;
         }
     }
-    if let Some(StatsFormat::Json) = args.drawing.stats {
-        let report = Report {
-            adapter: drawing.adapter(),
-            exposure,
-            white,
-            total_ms: begun.elapsed().as_secs_f64() * 1e3,
-            frames_repeated: run.frames - stats.len(),
-            frames: &stats,
-        };
-        print(&serde_json::to_string_pretty(&report)?)?;
-    }
-    Ok(())
+    args.told.tell(&Report {
+        adapter: drawing.adapter(),
+        exposure,
+        white,
+        total_ms: begun.elapsed().as_secs_f64() * 1e3,
+        frames_repeated: run.frames - stats.len(),
+        frames: &stats,
+    })
 }
 
-/// What `--stats json` prints.
+/// What `--json` prints.
 #[derive(Serialize)]
 struct Report<'a> {
     adapter: String,

@@ -1,11 +1,9 @@
 //! `kelir bench`: what kelir measures of itself.
 
-use std::path::{Path, PathBuf};
-
 use anyhow::Result;
-use kelir_render::file;
 
-use super::drawing::{Drawing, render_error};
+use super::drawing::Drawing;
+use crate::output::Figures;
 
 mod accuracy;
 mod frames;
@@ -26,9 +24,8 @@ pub enum Command {
         /// Also a table over pixels, mask size, emitters, puppets, samples and threads.
         #[arg(long)]
         scaling: bool,
-        /// Also write the figures as JSON.
-        #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
+        #[command(flatten)]
+        figures: Figures,
     },
     /// Error against time: every technique over its knobs, against Monte Carlo and, on crops, the oracle.
     Accuracy(accuracy::Args),
@@ -44,9 +41,8 @@ pub enum Command {
         /// Leave out masks of more texels a side: 8192 takes minutes.
         #[arg(long, value_name = "SIDE", default_value_t = 8192)]
         most: usize,
-        /// Also write the figures as JSON (not of --stats).
-        #[arg(long, value_name = "FILE", conflicts_with = "stats")]
-        json: Option<PathBuf>,
+        #[command(flatten)]
+        figures: Figures,
     },
     /// Durable answers a second, against Express and better-sqlite3 that store the same rows; how long a thousand people wait; whether starts and
     /// answers slow down as sessions gather.
@@ -58,23 +54,14 @@ pub enum Command {
 /// Runs the command.
 pub fn run(command: Command) -> Result<()> {
     match command {
-        Command::Frames { drawing, frames, scaling, json } => {
-            frames::run(&drawing, frames, scaling, json.as_deref())
+        Command::Frames { drawing, frames, scaling, figures } => {
+            frames::run(&drawing, frames, scaling, &figures)
         }
         Command::Accuracy(args) => accuracy::run(&args),
-        Command::Numerics { stats: true, .. } => numerics::statistics(),
-        Command::Numerics { curves: true, json, .. } => numerics::curves(json.as_deref()),
-        Command::Numerics { most, json, .. } => numerics::renderer(most, json.as_deref()),
+        Command::Numerics { stats: true, figures, .. } => numerics::statistics(&figures),
+        Command::Numerics { curves: true, figures, .. } => numerics::curves(&figures),
+        Command::Numerics { most, figures, .. } => numerics::renderer(most, &figures),
         Command::Load(args) => load::run(&args),
         Command::Rows(args) => rows::run(&args),
-    }
-}
-
-fn write_json(path: Option<&Path>, report: &impl serde::Serialize) -> Result<()> {
-    match path {
-        Some(path) => {
-            file::write_atomic(path, serde_json::to_string_pretty(report)?.as_bytes()).map_err(render_error)
-        }
-        None => Ok(()),
     }
 }

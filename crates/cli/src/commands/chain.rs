@@ -7,10 +7,9 @@ use clap::Subcommand;
 use kelir_server::results;
 use kelir_store::ChainReport;
 
-use super::stats::Format;
 use super::stored::{block_on, results_error};
 use crate::bad_input;
-use crate::output::{csv, print, table};
+use crate::output::{Format, Printed, csv, print, print_json, table};
 
 /// Subcommands of `kelir chain`.
 #[derive(Subcommand)]
@@ -23,8 +22,8 @@ pub enum Command {
         /// The server's data folder; it may be running.
         #[arg(long, default_value = "data")]
         data: PathBuf,
-        #[arg(long, value_enum, default_value = "table")]
-        format: Format,
+        #[command(flatten)]
+        printed: Printed,
     },
     /// Leave a note on a row that does not verify, for whoever checks later. Notes are kept with their author and time, and never changed.
     Note {
@@ -51,14 +50,14 @@ pub enum Command {
 /// Runs the command.
 pub fn run(command: Command) -> Result<()> {
     match command {
-        Command::Check { study, data, format } => {
+        Command::Check { study, data, printed } => {
             let report = block_on(async {
                 let store = results::open_study(&data, &study).await.map_err(results_error)?;
                 let report = store.verify_chain(&study).await;
                 store.close().await;
                 Ok(report?)
             })?;
-            show(&report, format)?;
+            show(&report, printed.form())?;
             match report.unexplained().count() {
                 0 => Ok(()),
                 n => anyhow::bail!(
@@ -97,7 +96,7 @@ fn show(report: &ChainReport, format: Format) -> Result<()> {
         })
         .collect();
     match format {
-        Format::Json => print(&serde_json::to_string_pretty(report)?),
+        Format::Json => print_json(report),
         Format::Csv => print(&csv(&header, &rows)),
         Format::Table => {
             let faults = match rows.len() {

@@ -8,13 +8,16 @@ use kelir_render::exposure::Rule;
 use kelir_render::job::{Job, Output};
 use kelir_render::{Backend, Pixel, RenderError, Technique, View, mc, oracle, pa, pcss, points};
 use kelir_scene::{Scene, Theatre};
+use kelir_server::shipped;
+use serde::Serialize;
 
 use crate::bad_input;
+use crate::output::print_json;
 
 /// What to draw and how.
 #[derive(clap::Args)]
 pub struct Drawing {
-    /// Scene file (TOML).
+    /// Scene file (TOML), or the name of a scene that ships: `kelir scene list`.
     pub scene: PathBuf,
     /// What draws: pa (summed-area tables), mc (Monte Carlo, the ground truth), points (point lights),
     /// pcss (percentage-closer soft shadows), oracle (slow f64 sums).
@@ -74,15 +77,29 @@ pub struct Drawing {
     /// Compute everything, also what the scene does not need; the bytes are the same.
     #[arg(long)]
     pub no_skip: bool,
-    /// Print what was done, skipped and how long each step took.
-    #[arg(long, value_enum)]
-    pub stats: Option<StatsFormat>,
+}
+
+/// Whether what was done is printed.
+#[derive(clap::Args)]
+pub struct Told {
+    /// Print one JSON document: what was done, skipped and how long each step took.
+    #[arg(long)]
+    json: bool,
+    /// As `--json`.
+    #[arg(long, value_enum, hide = true)]
+    stats: Option<StatsFormat>,
+}
+
+impl Told {
+    /// Prints the document, if it is asked for.
+    pub fn tell(&self, document: &impl Serialize) -> Result<()> {
+        if self.json || self.stats.is_some() { print_json(document) } else { Ok(()) }
+    }
 }
 
 /// Format of `--stats`.
 #[derive(Clone, Copy, ValueEnum)]
-pub enum StatsFormat {
-    /// One JSON object on standard output.
+enum StatsFormat {
     Json,
 }
 
@@ -202,7 +219,7 @@ impl Drawing {
 
     /// Reads and validates the scene; every problem is named.
     pub fn load(&self) -> Result<Scene> {
-        Scene::from_path(&self.scene).map_err(bad_input)
+        shipped::scene(&self.scene).map_err(bad_input)
     }
 
     /// The image asked for.

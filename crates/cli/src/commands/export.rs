@@ -6,10 +6,10 @@ use anyhow::{Context, Result};
 use clap::ValueEnum;
 use kelir_render::file::write_atomic;
 use kelir_server::{
-    Selection, Store, codebook_csv, codebook_of, participants_table, responses_csv, results::pairs_csv,
-    spreadsheet,
+    Selection, Store, codebook_csv, codebook_of, events_table, participants_table, responses_csv,
+    results::pairs_csv, spreadsheet,
 };
-use kelir_study::columns::participants_codebook;
+use kelir_study::columns::{events_codebook, participants_codebook};
 
 use super::stored::{Stored, block_on};
 use crate::bad_input;
@@ -37,12 +37,16 @@ enum Table {
     Responses,
     /// One row a session: who came, when, with what, how far, whether judged.
     Participants,
+    /// One row for each thing that happened to a page while a trial was taken: lost focus, a resize, an input that did not count.
+    Events,
     /// Choices as pwcmp reads them, without the excluded.
     Pairs,
     /// What each column of the responses is.
     Codebook,
     /// What each column of the participants is.
     ParticipantsCodebook,
+    /// What each column of the events is.
+    EventsCodebook,
 }
 
 /// Runs the command.
@@ -80,6 +84,8 @@ async fn csv(store: &Store, selection: &Selection, table: Table) -> Result<Vec<u
     let text = match table {
         Table::Responses => responses_csv(store, selection).await?,
         Table::Participants => participants_table(store, selection).await?.csv(),
+        Table::Events => events_table(store, selection).await?.csv(),
+        Table::EventsCodebook => codebook_of(&events_codebook()).csv(),
         Table::Pairs => pairs_csv(store, selection).await?,
         Table::Codebook => codebook_csv(),
         Table::ParticipantsCodebook => {

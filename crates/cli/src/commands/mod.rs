@@ -3,8 +3,10 @@
 pub mod animate;
 pub mod bench;
 pub mod chain;
+mod checked;
 mod drawing;
 pub mod export;
+pub mod new;
 pub mod paper;
 pub mod power;
 pub mod render;

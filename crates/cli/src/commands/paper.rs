@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::ValueEnum;
 use kelir_stats::paper::{Comparison, Replication, taylor_cameron};
 
-use crate::output::print;
+use crate::output::{print, print_json};
 
 /// Arguments of `kelir paper`.
 #[derive(clap::Args)]
@@ -12,7 +12,7 @@ pub struct Args {
     /// Which paper.
     #[arg(value_enum)]
     paper: Paper,
-    /// Print everything as JSON, full precision.
+    /// Print one JSON document, in full precision.
     #[arg(long)]
     json: bool,
 }
@@ -29,7 +29,7 @@ pub fn run(args: Args) -> Result<()> {
     let Paper::TaylorCameron = args.paper;
     let replication = taylor_cameron()?;
     if args.json {
-        return print(&serde_json::to_string_pretty(&replication)?);
+        return print_json(&replication);
     }
     let comparisons: Vec<String> = replication.comparisons.iter().map(comparison).collect();
     print(&format!(

@@ -3,23 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use kelir_render::file;
+use kelir_server::shipped::{Shipped, is_file};
 use kelir_study::StudyDefinition;
 use kelir_study::power::{Design, DesignFile, Needed, Power, Rate, power};
 
-use super::drawing::render_error;
-use crate::output::{print, table};
+use crate::output::{Figures, table};
 use crate::{bad_input, progress};
 
 /// Arguments of `kelir power`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Design file (TOML): the study, what is supposed to be true, the numbers of participants to try.
-    #[arg(long, value_name = "FILE")]
+    /// Design file (TOML), or the name of one that ships: the study, what is supposed to be true, the numbers of participants to try.
+    #[arg(long, value_name = "DESIGN")]
     design: PathBuf,
-    /// Also write everything as JSON.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: Figures,
 }
 
 /// Runs the command.
@@ -28,20 +26,38 @@ pub fn run(args: &Args) -> Result<()> {
     let bar = progress::bar(design.simulations, "simulated studies");
     let found = power(&design, &|done| bar.set_position(done));
     bar.finish_and_clear();
-    if let Some(path) = &args.json {
-        file::write_atomic(path, serde_json::to_string_pretty(&found)?.as_bytes()).map_err(render_error)?;
-    }
-    print(&text(&found))
+    args.figures.give(&found)?;
+    args.figures.say(&text(&found))
 }
 
-fn read(path: &Path) -> Result<Design> {
-    let text = |path: &Path| {
-        std::fs::read_to_string(path).map_err(|error| bad_input(format!("{}: {error}", path.display())))
+fn read(argument: &Path) -> Result<Design> {
+    let (path, text) = file(argument)?;
+    let design = DesignFile::parse(&path, &text).map_err(bad_input)?;
+    let folder = Path::new(&path).parent().unwrap_or(Path::new(""));
+    let (path, text) = match is_file(argument) {
+        true => file(&folder.join(&design.study))?,
+        // A design that ships names a study that ships.
+        false => {
+            shipped(Shipped::Study, Path::new(&design.study).file_stem().and_then(|stem| stem.to_str()))?
+        }
     };
-    let file = DesignFile::parse(&path.display().to_string(), &text(path)?).map_err(bad_input)?;
-    let study = path.parent().unwrap_or(Path::new("")).join(&file.study);
-    let study = StudyDefinition::parse(&study.display().to_string(), &text(&study)?).map_err(bad_input)?;
-    file.design(study).map_err(bad_input)
+    design.design(StudyDefinition::parse(&path, &text).map_err(bad_input)?).map_err(bad_input)
+}
+
+/// Path and text of a file, or of a design that ships.
+fn file(argument: &Path) -> Result<(String, String)> {
+    if !is_file(argument) {
+        return shipped(Shipped::Design, argument.to_str());
+    }
+    let text = std::fs::read_to_string(argument);
+    let text = text.map_err(|error| bad_input(format!("{}: {error}", argument.display())))?;
+    Ok((argument.display().to_string(), text))
+}
+
+fn shipped(kind: Shipped, name: Option<&str>) -> Result<(String, String)> {
+    let path = kind.path(name.unwrap_or_default()).map_err(bad_input)?;
+    let text = Shipped::text(&path).unwrap_or_default();
+    Ok((path, text))
 }
 
 fn text(found: &Power) -> String {

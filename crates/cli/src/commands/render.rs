@@ -10,9 +10,8 @@ use kelir_render::job::{self, Drawn, Output};
 use kelir_render::{Frame, Meter, RenderError, Stats, file};
 use serde::Serialize;
 
-use super::drawing::{Drawing, ExposureName, StatsFormat, render_error};
+use super::drawing::{Drawing, ExposureName, Told, render_error};
 use crate::bad_input;
-use crate::output::print;
 use crate::progress;
 
 /// Arguments of `kelir render`.
@@ -20,6 +19,8 @@ use crate::progress;
 pub struct Args {
     #[command(flatten)]
     drawing: Drawing,
+    #[command(flatten)]
+    told: Told,
     /// Instant of the timeline, in seconds; by default the scene as written, its timeline not applied.
     #[arg(long)]
     time: Option<f64>,
@@ -75,21 +76,17 @@ pub fn run(args: Args) -> Result<()> {
             error.mean_sampled, error.max
         );
     }
-    if let Some(StatsFormat::Json) = args.drawing.stats {
-        let report = Report {
-            technique: technique.name(),
-            adapter: drawing.adapter(),
-            size,
-            exposure,
-            white,
-            scene_sha256,
-            total_ms: begun.elapsed().as_secs_f64() * 1e3,
-            stats: &stats,
-            standard_error,
-        };
-        print(&serde_json::to_string_pretty(&report)?)?;
-    }
-    Ok(())
+    args.told.tell(&Report {
+        technique: technique.name(),
+        adapter: drawing.adapter(),
+        size,
+        exposure,
+        white,
+        scene_sha256,
+        total_ms: begun.elapsed().as_secs_f64() * 1e3,
+        stats: &stats,
+        standard_error,
+    })
 }
 
 /// The file's bytes, what was done, and the image in linear light where it was drawn in that.
@@ -110,7 +107,7 @@ fn draw(
     }
 }
 
-/// What `--stats json` prints.
+/// What `--json` prints.
 #[derive(Serialize)]
 struct Report<'a> {
     technique: &'a str,

@@ -7,7 +7,7 @@ use kelir_stats::inference::{TTest, t_test_from_counts};
 
 use super::stored::Stored;
 use crate::bad_input;
-use crate::output::{csv, print, table};
+use crate::output::{Format, Printed, csv, print, print_json, table};
 
 /// Arguments of `kelir stats`.
 #[derive(clap::Args)]
@@ -20,6 +20,9 @@ pub struct Args {
     study: Option<String>,
     #[command(flatten)]
     stored: Stored,
+    /// Print one JSON document, everything in full precision.
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
     #[arg(long, value_enum, default_value = "text")]
     format: ReportFormat,
 }
@@ -30,7 +33,8 @@ enum ReportFormat {
     /// For reading, 100 columns wide.
     #[value(alias = "table")]
     Text,
-    /// One JSON document, everything in full precision.
+    /// As `--json`.
+    #[value(hide = true)]
     Json,
     /// One row a number, full precision.
     Csv,
@@ -47,20 +51,9 @@ enum Test {
         /// The mean under the null hypothesis.
         #[arg(long)]
         mu: f64,
-        #[arg(long, value_enum, default_value = "table")]
-        format: Format,
+        #[command(flatten)]
+        printed: Printed,
     },
-}
-
-/// How results are printed.
-#[derive(Clone, Copy, ValueEnum)]
-pub enum Format {
-    /// Aligned columns.
-    Table,
-    /// One JSON document, full precision.
-    Json,
-    /// Comma-separated, full precision, one header line.
-    Csv,
 }
 
 #[derive(Clone)]
@@ -69,15 +62,16 @@ struct Counts(Vec<(f64, u64)>);
 /// Runs the command.
 pub fn run(args: Args) -> Result<()> {
     match (args.test, args.study) {
-        (Some(Test::Ttest { counts, mu, format }), _) => {
+        (Some(Test::Ttest { counts, mu, printed }), _) => {
             let test = t_test_from_counts(&counts.0, mu).map_err(bad_input)?;
-            print_test(&test, format)
+            print_test(&test, printed.form())
         }
         (None, Some(study)) => {
             let report = args.stored.report(&study)?;
             match args.format {
+                _ if args.json => print_json(&report),
                 ReportFormat::Text => print(&kelir_report::text(&Document::of(&report))),
-                ReportFormat::Json => print(&serde_json::to_string_pretty(&report)?),
+                ReportFormat::Json => print_json(&report),
                 ReportFormat::Csv => print(&kelir_report::csv(&report)),
             }
         }
@@ -87,7 +81,7 @@ pub fn run(args: Args) -> Result<()> {
 
 fn print_test(test: &TTest, format: Format) -> Result<()> {
     match format {
-        Format::Json => print(&serde_json::to_string_pretty(test)?),
+        Format::Json => print_json(test),
         Format::Csv => print(&csv(
             &["n", "mean", "sd", "mu", "t", "df", "p"],
             &[vec![

@@ -1,24 +1,51 @@
-//! `kelir study check FILE…`
+//! `kelir study`: checking study files, listing what was served.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use kelir_server::results;
+use kelir_server::links::{Links, Visit, now};
+use kelir_server::shipped::{Shipped, is_file};
+use kelir_server::{Library, StudyFileError, check_study, results};
+use kelir_study::Problem;
+use serde_json::json;
 
-use super::stats::Format;
+use super::checked::Checked;
 use super::stored::{block_on, results_error};
-
-use crate::BadInput;
-use crate::output::{csv, print, table};
+use crate::bad_input;
+use crate::output::{Format, Printed, csv, print, print_json, table};
 
 /// Subcommands of `kelir study`.
 #[derive(clap::Subcommand)]
 pub enum Command {
-    /// Validate study files and the scenes they name: every problem is named by file, field, value and rule.
+    /// Do all that serving will do, small: open each scene and picture, draw each stimulus, fill in each placeholder. Every problem is named by
+    /// file, field, value and rule.
     Check {
-        /// Study files (TOML).
+        /// Study files (TOML), or names of studies that ship.
         #[arg(required = true)]
         files: Vec<PathBuf>,
+        /// Print one JSON document.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Make a signed link by which who has it tries a study, as the console's buttons do.
+    Link {
+        /// Id of the study, as in its address.
+        study: String,
+        /// What it is for.
+        #[arg(long, value_enum, default_value = "pilot")]
+        kind: LinkKind,
+        /// For how many days it is good.
+        #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=90))]
+        days: u32,
+        /// The server's data folder; it may be running.
+        #[arg(long, default_value = "data")]
+        data: PathBuf,
+        /// The server's address, as people see it.
+        #[arg(long, default_value = "http://127.0.0.1:8080")]
+        base: String,
+        /// Print one JSON document.
+        #[arg(long)]
+        json: bool,
     },
     /// List the versions of a study that were served from a data folder, with what each has gathered.
     Versions {
@@ -27,17 +54,50 @@ pub enum Command {
         /// The server's data folder; it may be running.
         #[arg(long, default_value = "data")]
         data: PathBuf,
-        #[arg(long, value_enum, default_value = "table")]
-        format: Format,
+        #[command(flatten)]
+        printed: Printed,
     },
+}
+
+/// What a link is for.
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub enum LinkKind {
+    /// Stored, counted apart, left out of every analysis.
+    Pilot,
+    /// Nothing is stored.
+    Preview,
 }
 
 /// Runs the command.
 pub fn run(command: Command) -> Result<()> {
     match command {
-        Command::Check { files } => check(files),
-        Command::Versions { study, data, format } => versions(&study, &data, format),
+        Command::Check { files, json } => check(&files, json),
+        Command::Link { study, kind, days, data, base, json } => {
+            let (path, expires_at_s) = link(&study, kind, days, &data)?;
+            let url = format!("{}{path}", base.trim_end_matches('/'));
+            if json { print_json(&json!({ "url": url, "expires_at_s": expires_at_s })) } else { print(&url) }
+        }
+        Command::Versions { study, data, printed } => versions(&study, &data, printed.form()),
     }
+}
+
+/// Path of a link and when it ends, seconds since 1970.
+fn link(study: &str, kind: LinkKind, days: u32, data: &Path) -> Result<(String, u64)> {
+    if !data.is_dir() {
+        return Err(bad_input(format!("data = {}: there is no such folder", data.display())));
+    }
+    let files = Library::new(data).study_files();
+    let ids: Vec<&str> =
+        files.iter().filter_map(|path| path.strip_prefix("studies/")?.strip_suffix(".toml")).collect();
+    if !ids.contains(&study) {
+        return Err(bad_input(format!("study = {study}: must be one of {}", ids.join(", "))));
+    }
+    let visit = match kind {
+        LinkKind::Pilot => Visit::Pilot,
+        LinkKind::Preview => Visit::Preview,
+    };
+    let expires = now() + 86_400 * u64::from(days);
+    Ok((Links::open(data)?.link(study, visit, expires), expires))
 }
 
 fn versions(study: &str, data: &Path, format: Format) -> Result<()> {
@@ -78,23 +138,40 @@ fn versions(study: &str, data: &Path, format: Format) -> Result<()> {
         })
         .collect();
     match format {
-        Format::Json => print(&serde_json::to_string_pretty(&versions)?),
+        Format::Json => print_json(&versions),
         Format::Csv => print(&csv(&header, &rows)),
         Format::Table => print(&table(&header, &rows)),
     }
 }
 
-fn check(files: Vec<PathBuf>) -> Result<()> {
-    let mut problems = Vec::new();
+fn check(files: &[PathBuf], json: bool) -> Result<()> {
+    let mut checked = Checked::new(json);
     for file in files {
-        match kelir_server::check_study(&file) {
+        let study = match is_file(file) {
+            true => check_study(file),
+            false => match Shipped::Study.path(&file.to_string_lossy()) {
+                Ok(path) => Library::built_in().rehearsed(&path),
+                Err(rule) => {
+                    checked.unreadable(file, rule);
+                    continue;
+                }
+            },
+        };
+        match study {
             Ok(study) => {
-                let most = if study.blocks.iter().any(|b| b.adaptive.is_some()) { "at most " } else { "" };
+                let adaptive = study.blocks.iter().any(|b| b.adaptive.is_some());
                 let (blocks, trials) = (study.blocks.len(), study.most_trials());
-                print(&format!("{}: good (blocks: {blocks}, trials: {most}{trials})", file.display()))?;
+                let most = if adaptive { "at most " } else { "" };
+                let about = json!({ "study": study.id, "blocks": blocks, "trials_at_most": trials, "adaptive": adaptive,
+                    "design_hash": study.design_hash() });
+                checked.good(file, &format!("blocks: {blocks}, trials: {most}{trials}"), about)?;
             }
-            Err(errors) => problems.push(errors.to_string()),
+            Err(StudyFileError::Invalid(errors)) => {
+                let fields = |p: &Problem| json!({ "file": p.file, "field": p.field, "value": p.value, "rule": p.rule });
+                checked.wrong(file, errors.to_string(), errors.0.iter().map(fields).collect());
+            }
+            Err(error) => checked.unreadable(file, error.to_string()),
         }
     }
-    if problems.is_empty() { Ok(()) } else { Err(BadInput(problems.join("\n")).into()) }
+    checked.finish()
 }

@@ -1,6 +1,6 @@
 //! Studies with known answers.
 
-use kelir_report::{Chain, Excluded, Participants, PooledVersion, Stimulus, StudyReport};
+use kelir_report::{Chain, Excluded, Participants, PooledVersion, Standing, Stimulus, StudyReport};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::{Answers, Participant, Row};
 use kelir_study::report::Report;
@@ -168,7 +168,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
         if reasons.is_empty() {
             judged.push(participant);
         } else {
-            excluded.push(Excluded { session_id: participant.session_id.to_string(), reasons });
+            excluded.push(Excluded::new(participant.session_id.to_string(), reasons, true));
         }
     }
     let report = Report::of(&design, &judged);
@@ -184,6 +184,9 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
             json!({})
         },
     };
+    let people_count = people.len() as u64;
+    let participants = Participants { started: people_count, in_progress: 0, completed: people_count };
+    let standing = Standing { judged: judged.len() as u64, ..Standing::default() };
     StudyReport {
         study: design.id.clone(),
         title: design.title.clone(),
@@ -194,11 +197,8 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
         kelir_version: "0.1.0".to_owned(),
         answered: (!people.is_empty())
             .then(|| ["2026-11-22T14:22:22.960Z", "2026-11-22T15:02:01.000Z"].map(str::to_owned)),
-        participants: Participants {
-            started: people.len() as u64,
-            in_progress: 0,
-            completed: people.len() as u64,
-        },
+        participants,
+        standing: standing.summarised(&participants, &excluded, &[]),
         screening: design.screening.clone(),
         report,
         blocks_with_excluded: with_excluded.as_ref().map(|r| r.blocks.clone()),

@@ -28,12 +28,22 @@ pub(crate) struct Manifest<'a> {
 impl<'a> Manifest<'a> {
     pub fn read(root: &Node<'a>) -> Option<Self> {
         let mut fields = root.table()?;
-        for key in ["title", "source", "license"] {
-            fields.get(key).and_then(|n| n.string());
+        let about = [
+            ("title", "what it is called"),
+            ("source", "who drew or scanned it, and where"),
+            ("license", "under which terms it may be used"),
+        ];
+        for (key, what) in about {
+            fields.given(key, what).and_then(|n| n.string());
         }
         let image =
             fields.need("image", "the path of the puppet's SVG or PNG", |n| n.string().map(|_| n.clone()));
-        let parts = fields.optional("parts", Vec::new(), read_parts);
+        let parts = fields.optional(
+            "parts",
+            "groups of the SVG that turn, in drawing order; without any it is one piece",
+            Vec::new(),
+            read_parts,
+        );
         fields.done();
         Some(Self { image: image?, parts: parts? })
     }
@@ -91,11 +101,14 @@ fn read_part<'a>(node: &Node<'a>) -> Option<RawPart<'a>> {
             !id.is_empty() && id.len() <= 100 && id.chars().all(|c| c.is_alphanumeric() || "_-".contains(c));
         if sound { Some(id.to_owned()) } else { n.refuse("an id has 1 to 100 letters, digits, _ or -") }
     });
-    let parent = fields.get("parent");
-    let pivot = fields.optional("pivot", None, |n| {
-        n.items(|x| x.number_in(-1e6..=1e6, "a pivot is given in SVG user units, at most 1e6")).map(Some)
-    });
-    let limits_deg = fields.optional("limits_deg", None, |n| {
+    let parent = fields.given("parent", "id of the part that it hangs on; without it on none");
+    let pivot = fields.optional(
+        "pivot",
+        "what it turns about, [x, y] in SVG user units; without it it does not turn",
+        None,
+        |n| n.items(|x| x.number_in(-1e6..=1e6, "a pivot is given in SVG user units, at most 1e6")).map(Some),
+    );
+    let limits_deg = fields.optional("limits_deg", "[least, greatest] pose; without it any", None, |n| {
         let limits: [f64; 2] =
             n.items(|x| x.number_in(-360.0..=360.0, "a limit is between −360 and 360 degrees"))?;
         if limits[0] <= 0.0 && limits[1] >= 0.0 {

@@ -81,18 +81,29 @@ pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<E
         position = Some(n.clone());
         point(n)
     });
-    let translucent = fields.optional("translucent", false, |n| n.boolean());
-    let rotate_deg = fields.optional("rotate_deg", 0.0, degrees);
-    let tilt_node = fields.get("tilt_deg");
+    let translucent = fields.optional(
+        "translucent",
+        "whether the image's colour is what it lets through; without it false",
+        false,
+        |n| n.boolean(),
+    );
+    let rotate_deg =
+        fields.optional("rotate_deg", "turn in its plane, counter-clockwise; without it 0", 0.0, degrees);
+    let tilt_node = fields.given("tilt_deg", "turn about x, then about y; without it [0, 0]");
     let tilt_deg = tilt_node.as_ref().map_or(Some([0.0; 2]), tilt);
     let parts = art.as_ref().map(|a| a.parts.as_slice());
-    let pose = fields.optional("pose", vec![0.0; parts.map_or(0, <[Part]>::len)], |n| read_pose(n, parts));
-    let texels = fields.get("texels");
+    let pose = fields.optional(
+        "pose",
+        "part = degrees about its pivot, counter-clockwise; parts that are not named rest",
+        vec![0.0; parts.map_or(0, <[Part]>::len)],
+        |n| read_pose(n, parts),
+    );
+    let texels = fields.given("texels", "rows of its grid at rest; without it 1024, or a PNG's own");
     let rows = texels.as_ref().map_or(Some(None), |n| {
         let rule = "a puppet's grid has 64 to 8192 rows";
         n.integer_in(64..=limits::IMAGE_SIDE as i64, rule).map(|rows| Some(rows as usize))
     });
-    let bits = fields.optional("bits", 8, |n| {
+    let bits = fields.optional("bits", "bits a texel, 8 or 16; without it 8", 8, |n| {
         let bits = n.integer()?;
         if bits == 8 || bits == 16 { Some(bits as u32) } else { n.refuse("a mask has 8 or 16 bits") }
     });

@@ -2,6 +2,8 @@
 //! pages' TypeScript are read from these.
 
 mod auth;
+mod integrity;
+mod links;
 mod lists;
 mod problem;
 mod refusals;
@@ -10,7 +12,9 @@ mod studies;
 mod versions;
 
 pub use auth::{SignIn, SignedIn};
+pub use integrity::IntegrityReport;
 pub use kelir_study::trials::Answer;
+pub use links::{Link, NewLink, Trying, VisitKind};
 pub use lists::ListQuery;
 pub use problem::{Problem, ProblemCode, StoredAnswer};
 pub use sessions::{

@@ -1,15 +1,17 @@
 //! Taking part: a session from its beginning to its code. Conditions never leave the server.
 
 use super::studies::{StudyPath, told};
-use super::{Answered, Fresh};
+use super::{Answered, Fresh, links, previews};
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
-    SessionState, SessionStatus, StimulusRef, Trial, refusals,
+    SessionState, SessionStatus, Trial, refusals,
 };
 use crate::app::{App, idle};
 use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
+use crate::links::{Visit, is_of_link};
 use crate::making::StimulusMap;
 use crate::password::{random_code, random_token};
+use crate::presenting::Whose;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{
@@ -34,14 +36,13 @@ pub(crate) struct SessionPath {
 #[into_params(parameter_in = Path)]
 pub(crate) struct TrialPath {
     /// The session's id.
-    #[expect(dead_code, reason = "`Participant` reads it, with the token")]
-    session: String,
+    pub(super) session: String,
     /// The trial's index, in plain digits.
     #[param(value_type = u32)]
-    trial_index: String,
+    pub(super) trial_index: String,
 }
 
-refusals!(NotCreated: InvalidParameter, Unauthorized, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
+refusals!(NotCreated: InvalidParameter, Unauthorized, LinkRefused, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
 
 /// Begin a session. The answer holds its token, which is told this once.
 ///
@@ -66,8 +67,16 @@ pub(crate) async fn create_session(
     let served = loaded.ready()?;
     let token = random_token();
     let params = new.params.unwrap_or_default();
-    let kind = new.kind.unwrap_or_default();
-    if kind != SessionKind::Participant && researcher.is_none() {
+    let pairs: Vec<(String, String)> = params.clone().into_iter().collect();
+    let visit = links::visit(&app, &loaded.study.id, &pairs, researcher.is_some())?;
+    if visit == Visit::Preview {
+        let begun = crate::app::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
+        let language = new.display.as_ref().and_then(|display| display.get("language")?.as_str());
+        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun, language).await?)));
+    }
+    let is_pilot = visit == Visit::Pilot;
+    let kind = if is_pilot { SessionKind::Pilot } else { new.kind.unwrap_or_default() };
+    if kind != SessionKind::Participant && !is_pilot && researcher.is_none() {
         let detail = "Sign in first: a session that is no participant's is a researcher's.";
         return Err(Problem::new(ProblemCode::Unauthorized, detail));
     }
@@ -83,7 +92,7 @@ pub(crate) async fn create_session(
         repeat: loaded.study.session.repeat,
         start_key: start_key(&headers)?,
         user_agent: user_agent(&headers),
-        params: params.into_iter().collect(),
+        params: params.into_iter().filter(|(name, _)| !is_pilot || !is_of_link(name)).collect(),
         display: new.display.unwrap_or_default().into(),
         idle: idle(&loaded.study),
     };
@@ -143,7 +152,7 @@ fn plan_of(
 }
 
 /// Trials with their stimuli filled in.
-fn planned(
+pub(super) fn planned(
     stimuli: &StimulusMap,
     trials: Vec<kelir_study::Trial>,
 ) -> Result<Vec<PlannedTrial>, Box<Problem>> {
@@ -184,7 +193,8 @@ pub(crate) async fn give_consent(
     State(app): State<Arc<App>>,
 ) -> Answered<SessionState> {
     let crate::app::Begun { study, stimuli } = app.begun(&session).await?;
-    let text = study.texts.consent.join("\n\n");
+    // The text that was read, in the language in which it was.
+    let text = study.texts_in(language(&study, &session)).consent.join("\n\n");
     let idle = idle(&study);
     let plan = move |slot| plan_of(&study, &stimuli, slot);
     let session = app.store.consent(&session, &sha256_hex(text.as_bytes()), idle, plan).await?;
@@ -237,8 +247,10 @@ pub(crate) async fn put_answer(
         }
         Appended::NoSuchTrial => return Err(no_trial()),
     }
-    let trials = taken.trials.iter();
-    let trials = trials.map(|planned| trial_of(&begun.study, planned, &taken.answered)).collect();
+    let mut trials = Vec::new();
+    if !taken.trials.is_empty() {
+        trials = trials_of(&app, Whose::of(&session), &begun.study, &taken.trials, &taken.answered).await?;
+    }
     let (next_trial, more) = (taken.next_trial, taken.more);
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
 }
@@ -260,7 +272,11 @@ pub(crate) async fn post_answer(
 }
 
 /// What follows in a session from what it was shown and answered.
-fn next_of(begun: &crate::app::Begun, slot: u32, progress: &Progress) -> Result<NextTrials, Box<Problem>> {
+pub(super) fn next_of(
+    begun: &crate::app::Begun,
+    slot: u32,
+    progress: &Progress,
+) -> Result<NextTrials, Box<Problem>> {
     let study = &begun.study;
     let chose_target = |index: u32| {
         let trial = &progress.trials.get(index as usize)?.trial;
@@ -308,7 +324,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     let study = app.begun(session).await?.study;
     let answered = app.store.answered(&session.session_id).await?;
     let planned = app.store.trials(&session.session_id).await?;
-    let trials: Vec<Trial> = planned.iter().map(|planned| trial_of(&study, planned, &answered)).collect();
+    let trials = trials_of(app, Whose::of(session), &study, &planned, &answered).await?;
     let status = match (&session.completed_at, &session.consented_at) {
         (Some(_), _) => SessionStatus::Completed,
         (None, Some(_)) => SessionStatus::InProgress,
@@ -320,6 +336,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         session_id: session.session_id.clone(),
         study_id: session.study_id.clone(),
         study: told(&study),
+        language: language(&study, session).to_owned(),
         status,
         named: session.subject_id != session.session_id,
         consented: session.consented_at.is_some(),
@@ -332,23 +349,36 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     })
 }
 
-fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -> Trial {
-    let trial = &planned.trial;
-    let stimulus =
-        |sha256: &str| StimulusRef { sha256: sha256.to_owned(), url: format!("/stimuli/{sha256}") };
+/// The language in which a session is taken.
+fn language<'a>(study: &'a StudyDefinition, session: &'a Session) -> &'a str {
+    study.language_for(session.display.get("language").and_then(serde_json::Value::as_str))
+}
+
+pub(super) async fn trials_of(
+    app: &App,
+    whose: Whose<'_>,
+    study: &StudyDefinition,
+    planned: &[PlannedTrial],
+    answered: &[u32],
+) -> Result<Vec<Trial>, Box<Problem>> {
     let [width, height] = study.size;
-    Trial {
-        trial_index: trial.trial_index,
-        trial: trial.trial.rules().name(),
-        block_index: trial.block_index,
-        item_index: trial.item_index,
-        kind: trial.kind,
-        shown: planned.stimuli.iter().map(|(role, hashes)| (*role, stimulus(&hashes.sha256))).collect(),
-        settings: trial.trial.settings(),
-        width,
-        height,
-        answered: answered.contains(&trial.trial_index),
+    let mut trials = Vec::with_capacity(planned.len());
+    for planned in planned {
+        let trial = &planned.trial;
+        trials.push(Trial {
+            trial_index: trial.trial_index,
+            trial: trial.trial.rules().name(),
+            block_index: trial.block_index,
+            item_index: trial.item_index,
+            kind: trial.kind,
+            shown: app.presenter.tell(&app.store, whose, planned).await?,
+            settings: trial.trial.settings(),
+            width,
+            height,
+            answered: answered.contains(&trial.trial_index),
+        });
     }
+    Ok(trials)
 }
 
 fn completion(study: &StudyDefinition, session: &Session, completion_code: String) -> Completion {

@@ -3,6 +3,8 @@
 use super::{Answered, Fresh};
 use crate::api::{Codebook, Pooling, Problem, refusals, version_ref};
 use crate::app::App;
+use crate::audit::AUDIT;
+use crate::events::events_table;
 use crate::export::{codebook_csv, responses_csv, spreadsheet};
 use crate::extract::{Parameters, Query, Researcher};
 use crate::participants::participants_table;
@@ -14,7 +16,7 @@ use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use kelir_report::{Document, Figures, StudyReport, html, markdown};
-use kelir_study::columns::{codebook, participants_codebook};
+use kelir_study::columns::{codebook, events_codebook, participants_codebook};
 use serde::Deserialize;
 use std::sync::Arc;
 use utoipa::IntoParams;
@@ -208,6 +210,39 @@ pub(crate) async fn get_pairs_csv(
     Ok(csv(&format!("{}-pairs.csv", path.study), table))
 }
 
+/// One row for each thing that happened to a page while a trial was taken: lost focus, a resize, an input that did not count.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/events.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_events_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    let selection = chosen(&app, &path, &pooling).await?;
+    let table = events_table(&app.store, &selection).await?;
+    Ok(csv(&format!("{}-events.csv", path.study), table.csv()))
+}
+
+/// What each column of `events.csv` is, as a table.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/events_codebook.csv", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
+)]
+pub(crate) async fn get_events_codebook_csv(
+    _: Researcher,
+    State(app): State<Arc<App>>,
+    Parameters(path): Parameters<VersionPath>,
+    Query(pooling): Query<Pooling>,
+) -> File {
+    chosen(&app, &path, &pooling).await?;
+    Ok(csv(&format!("{}-events_codebook.csv", path.study), codebook_of(&events_codebook()).csv()))
+}
+
 /// What each column of `responses.csv` is, as a table.
 #[utoipa::path(
     get, path = "/api/v1/studies/{study}/versions/{version}/codebook.csv", tag = "results", security(("researcher" = [])),
@@ -246,6 +281,7 @@ fn csv(name: &str, text: String) -> Response {
 
 /// A file to keep, which no browser opens in the console's own origin.
 fn download(media_type: &str, name: &str, content: impl Into<Body>) -> Response {
+    tracing::info!(target: AUDIT, file = name, "a file was taken");
     let headers = [
         (header::CONTENT_TYPE, media_type.to_owned()),
         (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\"")),

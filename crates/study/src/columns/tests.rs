@@ -70,6 +70,8 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
         percent_complete: 100.0 / 3.0,
         slot: 0,
         plan_seed: "0".to_owned(),
+        judged: 1,
+        reject_reason: None,
     };
     let rows = Rows::default();
     for trial in TrialPlan::for_slot(&study, 0).trials {
@@ -83,7 +85,7 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
             payload["hidden_ms"] = json!(0);
             payload["onset"] = json!(-1);
             let checked = rules.check(&payload).map_or_else(|_| String::new(), |checked| checked.answer);
-            let broken = if trial.trial.name() == "two-interval" { "requested_ms onset" } else { "onset" };
+            let broken = if trial.trial.name() == "two-interval" { "onset requested_ms" } else { "onset" };
             let answer = if trial.trial.name() == "two-interval" {
                 json!({ "choice": roles[usize::from(!chose_first)].as_str(), "rt_ms": 812.5 }).to_string()
             } else {
@@ -125,4 +127,45 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
             assert_eq!((cell("flags"), cell("onset"), cell("hidden_ms")), (broken, "", "0"));
         }
     }
+}
+
+#[test]
+fn each_event_is_a_row_that_its_codebook_explains_and_pages_of_before_sent_none() {
+    let codebook = events_codebook();
+    let names: Vec<&str> = codebook.iter().map(|column| column.name.as_str()).collect();
+    assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "no name twice: {names:?}");
+    assert!(codebook.iter().all(|column| column.meaning.len() > 4), "{codebook:?}");
+    let column = |name: &str| codebook.iter().find(|column| column.name == name).unwrap();
+    assert_eq!((column("time_ms").unit.as_str(), column("event").values.len()), ("ms", 9));
+    assert!(column("reason").values.iter().any(|value| value.value == "double"));
+
+    let study = study();
+    let trial = &TrialPlan::for_slot(&study, 0).trials[0];
+    let of = EventSession { subject_id: "p1", session_id: "s", study_id: "t", version: "v" };
+    let mut payload = trial.trial.rules().simulate(true, 812.5);
+    assert!(event_rows(&of, trial, &payload).is_empty());
+    assert!(event_rows(&of, trial, &Value::Null).is_empty(), "withdrawn");
+    payload["events"] = json!([
+        { "event": "ignored", "time_ms": -120.5, "reason": "answered", "input": "pen", "choice": "left" },
+        { "event": "resize", "time_ms": 300, "viewport": [390, 844], "scale": 0.5, "css_width_px": 296, "device_pixel_ratio": 2,
+          "arrangement": "stack" },
+        { "event": "blur", "time_ms": "soon" },
+    ]);
+    let rows = event_rows(&of, trial, &payload);
+    let cell = |row: usize, name: &str| rows[row][names.iter().position(|n| *n == name).unwrap()].as_str();
+    assert_eq!(rows.len(), 3);
+    for (row, cells) in rows.iter().enumerate() {
+        assert_eq!(cells.len(), names.len());
+        assert_eq!((cell(row, "subject_id"), cell(row, "event_index")), ("p1", row.to_string().as_str()));
+        assert_eq!(cell(row, "trial_index"), trial.trial_index.to_string());
+    }
+    assert_eq!(
+        ["event", "time_ms", "reason", "input", "choice"].map(|name| cell(0, name)),
+        ["ignored", "-120.5", "answered", "pen", "left"]
+    );
+    assert_eq!(
+        ["viewport_width", "viewport_height", "scale", "arrangement"].map(|name| cell(1, name)),
+        ["390", "844", "0.5", "stack"]
+    );
+    assert_eq!((cell(2, "event"), cell(2, "time_ms")), ("blur", ""), "what breaks its rule is empty");
 }

@@ -4,14 +4,16 @@
 //! folder of its name in `web/participant/trials/`. Nothing else in the house knows which kinds there are; a test holds it to that.
 
 mod choice;
+mod events;
 mod taken;
 #[cfg(test)]
 mod tests;
 mod two_alternative;
 mod two_interval;
 
-pub use taken::{FrameLog, Input, Length, Taken};
-pub use two_alternative::{Arrangement, Side, TwoAlternativeAnswer};
+pub use events::{EventKind, Ignored, TrialEvent};
+pub use taken::{Arrangement, FrameLog, Geometry, Input, Length, Taken};
+pub use two_alternative::{Side, TwoAlternativeAnswer};
 pub use two_interval::{Intervals, StepFrames, StepTimes, TwoIntervalAnswer, Which};
 
 use crate::fields::Fields;

@@ -1,6 +1,6 @@
 //! What every page says of how a trial was taken, whatever its kind.
 
-use super::Role;
+use super::{Role, TrialEvent};
 use crate::schema::worded;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -20,16 +20,30 @@ worded! {
     }
 }
 
-/// How an animation was shown.
+worded! {
+    /// How the two pictures stood.
+    pub enum Arrangement {
+        /// beside each other
+        Side = "side",
+        /// the right one below the left one
+        Stack = "stack",
+        /// side, in the word that the codebook used to have
+        Beside = "beside",
+        /// stack, in the word that the codebook used to have
+        Below = "below",
+    }
+}
+
+/// How an animation was shown. Its position is a function of time: frame n is due n / fps seconds after the first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FrameLog {
     /// Frames per second of the animation.
     #[schema(minimum = 0, extensions(("x-unit" = json!("Hz"))))]
     pub fps: Option<f64>,
-    /// Refresh rate that the animation was timed by.
+    /// Refresh rate of the display, to which the nearest refresh of a frame's time is found.
     #[schema(minimum = 0, extensions(("x-unit" = json!("Hz"))))]
     pub refresh_hz: Option<f64>,
-    /// Refreshes that each frame is shown for.
+    /// Refreshes that each frame was shown for, where pages counted these; they don't any more.
     #[schema(minimum = 0)]
     pub hold: Option<f64>,
     /// Refreshes from the first frame to the choice.
@@ -41,18 +55,50 @@ pub struct FrameLog {
     /// Frames passed over without being drawn.
     #[schema(minimum = 0)]
     pub skipped: Option<f64>,
+    /// Frames that were never drawn, or later than their time by more than a refresh.
+    #[serde(default)]
+    #[schema(minimum = 0)]
+    pub missed_frames: Option<f64>,
     /// Refreshes at which the browser did not let the page draw.
     #[schema(minimum = 0)]
     pub missed_refreshes: Option<f64>,
-    /// Longest time between two draws.
+    /// Longest time between two refreshes at which the page could draw.
     #[schema(minimum = 0, extensions(("x-unit" = json!("ms"))))]
     pub longest_interval_ms: Option<f64>,
+    /// What was shown when: frame, counted on through loops, and ms since the first frame, of each frame drawn, up to 600.
+    #[serde(default)]
+    #[schema(max_items = 600)]
+    pub draws: Option<Vec<Vec<f64>>>,
 }
 
 /// A length that is not negative.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(minimum = 0)]
 pub struct Length(pub f64);
+
+/// How stimuli stand on the page.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Geometry {
+    /// Device pixels per stimulus pixel, pinch zoom included; 1 is native. Shown on device_pixel_ratio × css_width_px device pixels.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 100)]
+    pub scale: Option<f64>,
+    /// Width at which each stimulus stood, pinch zoom included: its width in pixels × scale / device_pixel_ratio.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1e6, extensions(("x-unit" = json!("CSS px"))))]
+    pub css_width_px: Option<f64>,
+    /// Device pixels per CSS pixel.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 100)]
+    pub device_pixel_ratio: Option<f64>,
+    /// Width and height of the window's inside, CSS px.
+    #[serde(default)]
+    #[schema(min_items = 2, max_items = 2)]
+    pub viewport: Option<Vec<Length>>,
+    /// How two pictures that are there at once stand; empty where one stands alone.
+    #[serde(default)]
+    pub arrangement: Option<Arrangement>,
+}
 
 /// What every page says of how a trial was taken. A stimulus pixel is one of the picture, a device pixel one of the display, a CSS pixel one of the page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -79,22 +125,16 @@ pub struct Taken {
     /// What the answer was given with.
     #[serde(default)]
     pub input: Option<Input>,
-    /// Device pixels per stimulus pixel, pinch zoom included; 1 is native. Shown on device_pixel_ratio × css_width_px device pixels.
+    /// How the stimuli stood at the answer.
+    #[serde(flatten)]
+    pub geometry: Geometry,
+    /// 1 where they stood otherwise at onset, else 0; the changes are events.
     #[serde(default)]
-    #[schema(minimum = 0, maximum = 100)]
-    pub scale: Option<f64>,
-    /// Width at which each stimulus stood, pinch zoom included: its width in pixels × scale / device_pixel_ratio.
+    #[schema(maximum = 1)]
+    pub geometry_changed: Option<u8>,
+    /// At onset, where that was otherwise:
     #[serde(default)]
-    #[schema(minimum = 0, maximum = 1e6, extensions(("x-unit" = json!("CSS px"))))]
-    pub css_width_px: Option<f64>,
-    /// Device pixels per CSS pixel.
-    #[serde(default)]
-    #[schema(minimum = 0, maximum = 100)]
-    pub device_pixel_ratio: Option<f64>,
-    /// Width and height of the window's inside, CSS px.
-    #[serde(default)]
-    #[schema(min_items = 2, max_items = 2)]
-    pub viewport: Option<Vec<Length>>,
+    pub at_onset: Option<Geometry>,
     /// Measured refresh rate of the display; empty where it could not be measured.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 10000, extensions(("x-unit" = json!("Hz"))))]
@@ -118,4 +158,16 @@ pub struct Taken {
     /// Of animations: how each was played, by role.
     #[serde(default)]
     pub frames: Option<BTreeMap<Role, FrameLog>>,
+    /// Of animations: how many of their frames were never drawn, or later than their time by more than a refresh. More than 0 marks a trial.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1000000000)]
+    pub missed_frames: Option<u32>,
+    /// What happened to the page from the last answer to this one; the table of events has a row each.
+    #[serde(default)]
+    #[schema(max_items = 200)]
+    pub events: Option<Vec<TrialEvent>>,
+    /// How many events there were beyond those that are listed.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 1000000000)]
+    pub events_dropped: Option<u32>,
 }

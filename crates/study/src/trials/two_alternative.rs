@@ -17,28 +17,11 @@ worded! {
     }
 }
 
-worded! {
-    /// How the two pictures stood.
-    pub enum Arrangement {
-        /// beside each other
-        Side = "side",
-        /// the right one below the left one
-        Stack = "stack",
-        /// side, in the word that the codebook used to have
-        Beside = "beside",
-        /// stack, in the word that the codebook used to have
-        Below = "below",
-    }
-}
-
 /// What a page sends for a two-alternative trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TwoAlternativeAnswer {
     /// The picture chosen.
     pub choice: Side,
-    /// How the two pictures stood.
-    #[serde(default)]
-    pub arrangement: Option<Arrangement>,
     /// How the trial was taken.
     #[serde(flatten)]
     pub taken: Taken,

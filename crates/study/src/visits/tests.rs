@@ -213,3 +213,15 @@ fn an_id_that_cannot_be_taken_is_refused_by_name() {
         assert!(refused.rule.contains("1 to 512 bytes"), "{}", refused.rule);
     }
 }
+
+#[test]
+fn the_table_of_flags_in_the_study_files_pages_is_this_one() {
+    let page = include_str!("../../../../stimuli/studies/README.md");
+    for flag in Flag::ALL {
+        let row = format!("| `{}` | {} |", flag.as_str(), flag.meaning());
+        assert!(page.contains(&row), "stimuli/studies/README.md lacks: {row}");
+    }
+    for name in ID_PARAMETERS {
+        assert!(page.contains(&format!("`{name}`")), "{name}");
+    }
+}

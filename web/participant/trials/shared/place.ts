@@ -1,4 +1,5 @@
 /** Where pictures stand on a trial's page: in the room between question and position, in whole device pixels. */
+import { h } from "../../../shared/dom.ts";
 import { rounded } from "../../clock.ts";
 
 /** Room around the pictures for an outline, CSS px. */
@@ -13,6 +14,17 @@ export function roomWithin(root: HTMLElement, heading: HTMLElement, footer: HTML
   const { paddingTop, paddingBottom } = getComputedStyle(root);
   const around = outer(heading) + outer(footer) + parseFloat(paddingTop) + parseFloat(paddingBottom);
   return { roomWidth: document.documentElement.clientWidth - 2 * EDGE, roomHeight: innerHeight - around - 2 * EDGE, devicePixelRatio };
+}
+
+/** What pictures could fill on a trial's page with this question, before there is one. */
+export function roomFor(question: string): ReturnType<typeof roomWithin> {
+  const [heading, footer] = [h("h1", {}, question), h("p", { class: "position" })];
+  const root = h("section", { class: "trial", "aria-hidden": "true" }, heading, footer);
+  Object.assign(root.style, { position: "absolute", inset: "0", visibility: "hidden", pointerEvents: "none" });
+  document.body.append(root);
+  const room = roomWithin(root, heading, footer);
+  root.remove();
+  return room;
 }
 
 /** Shifts `box` by less than a pixel, so that `picture` within it begins at a whole device pixel. */

@@ -17,7 +17,7 @@ export class Player {
     this.#clock = new AnimationClock({ fps, loop, frames: frames.length, periodMs });
   }
 
-  /** Draws the frame of the refresh at `now`, if it isn't there already; the first call draws frame 0. */
+  /** Draws the frame of the moment `now`, if it isn't there already; the first call draws frame 0. */
   draw(now: number): void {
     const frame = this.#clock.tick(now);
     const bitmap = this.#frames[frame];
@@ -30,4 +30,11 @@ export class Player {
   log(): FrameLog {
     return this.#clock.log();
   }
+}
+
+/** What is stored of the animations that were played, by role: how, and whether the trial missed frames; nothing where there were none. */
+export function played<Role extends string>(players: ReadonlyArray<readonly [Role, Player]>): { missed_frames?: number; frames?: Partial<Record<Role, FrameLog>> } {
+  if (players.length === 0) return {};
+  const logs = players.map(([role, player]) => [role, player.log()] as const);
+  return { missed_frames: logs.reduce((sum, [, log]) => sum + log.missed_frames, 0), frames: Object.fromEntries(logs) as Partial<Record<Role, FrameLog>> };
 }

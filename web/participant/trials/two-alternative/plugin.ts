@@ -3,13 +3,13 @@ import { type JsPsych, type JsPsychPlugin, ParameterType, type TrialType } from 
 import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Pictures } from "../../stimuli.ts";
-import { commonData, commonParameters } from "../module.ts";
+import { commonData, commonParameters, SIMULATED } from "../module.ts";
 import { FALLBACK_PERIOD_MS } from "../shared/player.ts";
 import { type Pair, Stage } from "./stage.ts";
 
 const info = <const>{
   name: "two-alternative",
-  version: "1.1.0",
+  version: "1.2.0",
   parameters: {
     ...commonParameters,
     /** Hashes of the two stimuli. */
@@ -43,25 +43,16 @@ export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
     const play = await stage.show(periodMs ?? FALLBACK_PERIOD_MS);
     trial.on_onset?.(pair.left.kind === "still" && pair.right.kind === "still");
 
-    const { role: side, input, at } = await stage.choice();
-    const rt = at - play.onset;
-    const hidden = stage.hiddenMs();
-    const { scale, css_width_px, ...where } = stage.shown();
+    const choice = await stage.taking.choice();
+    const told = stage.taking.told(choice, periodMs);
     const data = {
-      choice: side,
-      rt: rounded(rt),
-      onset: rounded(play.onset),
-      input,
-      scale,
-      css_width_px,
-      ...where,
-      refresh_hz: periodMs === null ? null : rounded(1000 / periodMs),
-      hidden_ms: rounded(hidden),
-      min_visible_ms: rounded(Math.max(0, rt - hidden)),
-      ...(play.log() ?? {}),
+      choice: choice.role,
+      ...told,
+      min_visible_ms: rounded(Math.max(0, told.rt - told.hidden_ms)),
+      ...play.log(),
     } satisfies Schemas["TwoAlternativeAnswer"];
     trial.on_choice?.(data);
-    stage.mark(side);
+    stage.mark(choice.role);
     await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));
     play.stop();
     stage.clear();
@@ -89,6 +80,6 @@ export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
       const target = display.querySelector<HTMLElement>(`[data-testid="choice-${made.choice}"]`);
       if (target !== null) this.#jsPsych.pluginAPI.clickTarget(target, made.rt);
     };
-    void this.trial(display, trial, click).then((data) => this.#jsPsych.finishTrial(data));
+    void this.trial(display, { ...trial, ...SIMULATED }, click).then((data) => this.#jsPsych.finishTrial(data));
   }
 }

@@ -1,13 +1,12 @@
 /** A pair on the screen, until it is answered. */
 import type { TrialType } from "jspsych";
 import { h } from "../../../shared/dom.ts";
-import type { FrameLog } from "../../clock.ts";
+import type { Rules } from "../../inputs/guard.ts";
 import { fitPair, type Layout } from "../../layout.ts";
 import type { Picture } from "../../stimuli.ts";
-import { type Choice, firstChoice } from "../shared/choice.ts";
-import { hiddenTime } from "../shared/hidden.ts";
 import { roomWithin, shownAt, toWholePixels } from "../shared/place.ts";
-import { Player } from "../shared/player.ts";
+import { Player, played } from "../shared/player.ts";
+import { Taking } from "../shared/taking.ts";
 import { words } from "../../words/index.ts";
 import type { Info } from "./plugin.ts";
 
@@ -15,6 +14,12 @@ export type Side = "left" | "right";
 export type Pair = Record<Side, Picture>;
 
 const SIDES: readonly Side[] = ["left", "right"];
+
+/** Keys follow how the pair stands. ← and → go on meaning the first and the second of a stacked one: a window may change after the instructions. */
+const KEYS: Record<Layout["arrangement"], Record<string, Side>> = {
+  side: { ArrowLeft: "left", ArrowRight: "right" },
+  stack: { ArrowUp: "left", ArrowDown: "right", ArrowLeft: "left", ArrowRight: "right" },
+};
 
 export class Stage {
   readonly #trial: TrialType<Info>;
@@ -27,8 +32,8 @@ export class Stage {
   readonly #paint: Record<Side, CanvasRenderingContext2D | null>;
   readonly #listening = new AbortController();
   #layout: Layout;
-  /** How long the page has been hidden since the pair was shown, ms. */
-  hiddenMs = () => 0;
+  /** The answer, and how it comes about. */
+  readonly taking: Taking<Side>;
 
   constructor(display: HTMLElement, trial: TrialType<Info>, pair: Pair) {
     this.#trial = trial;
@@ -49,31 +54,42 @@ export class Stage {
     this.#root = h("section", { class: "trial" }, this.#heading, this.#box, this.#footer);
     display.replaceChildren(this.#root);
     this.#layout = this.#fit();
-    addEventListener("resize", () => (this.#layout = this.#fit()), { signal: this.#listening.signal });
+    this.taking = new Taking({
+      ...{ root: this.#root, buttons: this.#buttons, keys: () => KEYS[this.#layout.arrangement], geometry: () => this.#shown() },
+      ...{ rules: trial.rules as Rules, simulated: trial.simulated === true },
+    });
+    addEventListener(
+      "resize",
+      () => {
+        this.#layout = this.#fit();
+        this.taking.resized();
+      },
+      { signal: this.#listening.signal },
+    );
   }
 
   /** Paints the pair and resolves at the frame after: the first at which it has been on the screen. */
-  async show(periodMs: number): Promise<{ onset: number; log(): { frames: Partial<Record<Side, FrameLog>> } | null; stop(): void }> {
+  async show(periodMs: number): Promise<{ log(): ReturnType<typeof played<Side>>; stop(): void }> {
     const players = SIDES.flatMap((side) => {
       const [picture, context] = [this.#pair[side], this.#paint[side]];
-      return picture.kind === "still" || context === null ? [] : [{ side, player: new Player(picture, context, periodMs) }];
+      return picture.kind === "still" || context === null ? [] : [[side, new Player(picture, context, periodMs)] as const];
     });
-    const draw = (now: number) => players.forEach(({ player }) => player.draw(now));
+    const draw = (now: number) => players.forEach(([, player]) => player.draw(now));
     const decoded = SIDES.flatMap((side) => {
       const picture = this.#pair[side];
       return picture.kind === "still" ? [picture.image.decode()] : [];
     });
     await Promise.all(decoded); // a decoded picture may have been dropped since; this is at once otherwise
     let running = true;
-    const onset = await new Promise<number>((resolve) => {
+    await new Promise<void>((resolve) => {
       requestAnimationFrame((now) => {
         draw(now);
         this.#box.classList.add("shown");
         this.#footer.textContent = this.#trial.position ?? "";
         this.#heading.focus({ preventScroll: true });
         requestAnimationFrame((painted) => {
-          this.hiddenMs = hiddenTime(this.#listening.signal);
-          resolve(painted);
+          this.taking.open(painted);
+          resolve();
           if (players.length === 0) return;
           const loop = (at: number) => {
             if (!running) return;
@@ -84,29 +100,24 @@ export class Stage {
         });
       });
     });
-    const log = () => (players.length === 0 ? null : { frames: Object.fromEntries(players.map(({ side, player }) => [side, player.log()])) });
-    return { onset, log, stop: () => (running = false) };
+    return { log: () => played(players), stop: () => (running = false) };
   }
 
-  /** The first choice after onset. */
-  choice(): Promise<Choice<Side>> {
-    return firstChoice<Side>({ root: this.#root, buttons: this.#buttons, keys: { ArrowLeft: "left", ArrowRight: "right" }, signal: this.#listening.signal });
-  }
-
-  /** How the pair was shown. */
-  shown() {
-    const { scale, css_width_px, ...display } = shownAt(this.#layout);
-    return { scale, css_width_px, arrangement: this.#layout.arrangement, ...display };
-  }
-
-  /** Outlines the choice and takes no other. */
+  /** Outlines the choice. */
   mark(side: Side): void {
-    this.#listening.abort();
     this.#buttons[side].classList.add("chosen");
   }
 
   clear(): void {
+    this.#listening.abort();
+    this.taking.close();
     this.#root.remove();
+  }
+
+  /** How the pair stands. */
+  #shown() {
+    const { scale, css_width_px, ...display } = shownAt(this.#layout);
+    return { scale, css_width_px, arrangement: this.#layout.arrangement, ...display };
   }
 
   /** Sizes and places the pictures in whole device pixels. */

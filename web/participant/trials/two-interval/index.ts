@@ -8,6 +8,7 @@ export default {
   roles: ["first", "second"],
   legend: {
     title: "kind-two-interval",
+    how: { touch: "how-interval-touch", click: "how-interval-click" },
     answers: [
       { keys: ["←", "1"], label: "key-first" },
       { keys: ["→", "2"], label: "key-second" },

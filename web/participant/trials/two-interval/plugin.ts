@@ -3,14 +3,14 @@ import { type JsPsych, type JsPsychPlugin, ParameterType, type TrialType } from 
 import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Pictures } from "../../stimuli.ts";
-import { commonData, commonParameters } from "../module.ts";
+import { commonData, commonParameters, SIMULATED } from "../module.ts";
 import { FALLBACK_PERIOD_MS } from "../shared/player.ts";
 import { inFrames, type PerStep, requested, STEPS } from "./sequence.ts";
 import { type Intervals, Stage } from "./stage.ts";
 
 const info = <const>{
   name: "two-interval",
-  version: "1.0.0",
+  version: "1.1.0",
   parameters: {
     ...commonParameters,
     /** Hashes of the two stimuli. */
@@ -55,27 +55,22 @@ export default class TwoIntervalPlugin implements JsPsychPlugin<Info> {
     const stage = new Stage(display, trial, pictures as Intervals);
     await stage.prepare();
     onLoad?.();
-    const { onset, shown, frames, restarts } = await stage.show(inFrames(requested_ms, periodMs), periodMs);
+    const { shown, film, restarts } = await stage.show(inFrames(requested_ms, periodMs), periodMs);
     trial.on_onset?.(true);
 
-    const { role, input, at } = await stage.choice();
+    const choice = await stage.taking.choice();
     const data = {
-      choice: role,
-      rt: rounded(at - onset),
-      onset: rounded(onset),
-      input,
-      ...stage.shown(),
-      refresh_hz: measured === null ? null : rounded(1000 / measured),
-      hidden_ms: rounded(stage.hiddenMs()),
+      choice: choice.role,
+      ...stage.taking.told(choice, measured),
       min_visible_ms: Math.min(shown.ms.first, shown.ms.second),
       requested_ms,
       shown_frames: shown.frames,
       shown_ms: shown.ms,
       restarts,
-      ...(frames === null ? {} : { frames }),
+      ...film,
     } satisfies Schemas["TwoIntervalAnswer"];
     trial.on_choice?.(data);
-    stage.mark(role);
+    stage.mark(choice.role);
     await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));
     stage.clear();
     return data;
@@ -101,7 +96,7 @@ export default class TwoIntervalPlugin implements JsPsychPlugin<Info> {
       const target = display.querySelector<HTMLElement>(`[data-testid="choice-${made.choice}"]`);
       if (target !== null) this.#jsPsych.pluginAPI.clickTarget(target, made.rt);
     };
-    void this.trial(display, { ...trial, on_onset: click }, onLoad).then((data) => this.#jsPsych.finishTrial(data));
+    void this.trial(display, { ...trial, ...SIMULATED, on_onset: click }, onLoad).then((data) => this.#jsPsych.finishTrial(data));
   }
 
   /** The data of a trial that goes as it was asked for, on a display that nobody measured. */

@@ -1,13 +1,13 @@
 /** Two pictures on the screen, one after the other, then the question's two buttons in their place. */
 import type { TrialType } from "jspsych";
 import { h } from "../../../shared/dom.ts";
-import type { FrameLog } from "../../clock.ts";
+import type { Rules } from "../../inputs/guard.ts";
 import { fitOne, inkOn, type Size, srgbCode } from "../../layout.ts";
 import type { Picture } from "../../stimuli.ts";
-import { type Choice, firstChoice } from "../shared/choice.ts";
-import { hiddenTime, visible } from "../shared/hidden.ts";
+import { visible } from "../shared/hidden.ts";
 import { roomWithin, shownAt, toWholePixels } from "../shared/place.ts";
-import { Player } from "../shared/player.ts";
+import { Player, played } from "../shared/player.ts";
+import { Taking } from "../shared/taking.ts";
 import { type Plain, words } from "../../words/index.ts";
 import { mask, seedOf } from "./mask.ts";
 import type { Info } from "./plugin.ts";
@@ -18,15 +18,16 @@ export type Intervals = Record<Interval, Picture>;
 
 const INTERVALS: readonly Interval[] = ["first", "second"];
 
+const KEYS: Record<string, Interval> = { ArrowLeft: "first", "1": "first", ArrowRight: "second", "2": "second" };
+
 /** What is said to those who hear the page. */
 const SPOKEN: Record<Step | "response", Plain | null> = { fixation: null, first: "spoken-first", mask: null, second: "spoken-second", response: "spoken-choose" };
 
 /** A sequence that was shown to its end. */
 export interface Shown {
-  /** First painted frame of the response screen. */
-  onset: number;
   shown: { frames: PerStep; ms: PerStep };
-  frames: Partial<Record<Interval, FrameLog>> | null;
+  /** How its animations were played. */
+  film: ReturnType<typeof played<Interval>>;
   /** How often the page was hidden during an interval, so that all began again. */
   restarts: number;
 }
@@ -46,8 +47,8 @@ export class Stage {
   /** All that is painted but animations, decoded: nothing has to be made while time is counted. */
   readonly #bitmaps: Partial<Record<Step, ImageBitmap>> = {};
   #size: Size;
-  /** How long the page has been hidden since the response screen was shown, ms. */
-  hiddenMs = () => 0;
+  /** The answer, and how it comes about. */
+  readonly taking: Taking<Interval>;
 
   constructor(display: HTMLElement, trial: TrialType<Info>, pictures: Intervals) {
     this.#trial = trial;
@@ -65,7 +66,18 @@ export class Stage {
     this.#root = h("section", { class: "trial" }, this.#heading, this.#box, this.#footer);
     display.replaceChildren(this.#root);
     this.#size = this.#fit();
-    addEventListener("resize", () => (this.#size = this.#fit()), { signal: this.#listening.signal });
+    this.taking = new Taking({
+      ...{ root: this.#root, buttons: this.#buttons, keys: () => KEYS, geometry: () => shownAt(this.#size) },
+      ...{ rules: trial.rules as Rules, simulated: trial.simulated === true },
+    });
+    addEventListener(
+      "resize",
+      () => {
+        this.#size = this.#fit();
+        this.taking.resized();
+      },
+      { signal: this.#listening.signal },
+    );
   }
 
   /** Decodes and draws beforehand. */
@@ -93,30 +105,18 @@ export class Stage {
     for (let restarts = 0; ; restarts += 1) {
       await visible();
       const seen = await this.#sequence(plan, periodMs);
-      if (seen === null) continue;
-      this.hiddenMs = hiddenTime(this.#listening.signal);
-      return { ...seen, restarts };
+      if (seen !== null) return { ...seen, restarts };
     }
   }
 
-  /** The first choice after onset. */
-  choice(): Promise<Choice<Interval>> {
-    const keys = { ArrowLeft: "first", "1": "first", ArrowRight: "second", "2": "second" } as const;
-    return firstChoice<Interval>({ root: this.#root, buttons: this.#buttons, keys, signal: this.#listening.signal });
-  }
-
-  /** How the pictures were shown. */
-  shown() {
-    return shownAt(this.#size);
-  }
-
-  /** Outlines the choice and takes no other. */
+  /** Outlines the choice. */
   mark(interval: Interval): void {
-    this.#listening.abort();
     this.#buttons[interval].classList.add("chosen");
   }
 
   clear(): void {
+    this.#listening.abort();
+    this.taking.close();
     this.#root.remove();
     for (const bitmap of Object.values(this.#bitmaps)) bitmap.close();
   }
@@ -129,10 +129,7 @@ export class Stage {
       const picture = this.#pictures[interval];
       if (picture.kind === "animation") players[interval] = new Player(picture, this.#context, periodMs);
     }
-    const log = () => {
-      const played = INTERVALS.flatMap((interval) => (players[interval] === undefined ? [] : [[interval, players[interval].log()] as const]));
-      return played.length === 0 ? null : Object.fromEntries(played);
-    };
+    const film = () => played(INTERVALS.flatMap((interval) => (players[interval] === undefined ? [] : [[interval, players[interval]] as const])));
     return new Promise((resolve) => {
       const over = new AbortController();
       const end = (seen: Omit<Shown, "restarts"> | null) => {
@@ -151,7 +148,9 @@ export class Stage {
         requestAnimationFrame(step === null ? response : frame);
       };
       const response = (onset: number) => {
-        if (!over.signal.aborted) end({ onset, shown: clock.shown(), frames: log() });
+        if (over.signal.aborted) return;
+        this.taking.open(onset);
+        end({ shown: clock.shown(), film: film() });
       };
       requestAnimationFrame(frame);
     });

@@ -6,16 +6,16 @@ use anyhow::Result;
 use kelir_plot::{Axis, Figure, Point, Rule, Series, svg};
 use kelir_render::accuracy::{CaseReport, Measured, Model, Options, Outcome, Report, all, measure};
 use kelir_render::{Backend, Pixel, Technique, View, file};
-use kelir_scene::Scene;
+use kelir_server::shipped;
 
 use crate::commands::drawing::{PixelName, parse_backend, parse_size, render_error};
-use crate::output::{print, table};
+use crate::output::{Figures, table};
 use crate::{bad_input, progress};
 
 /// What is measured, and how carefully.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Scene file (TOML).
+    /// Scene file (TOML), or the name of a scene that ships.
     scene: PathBuf,
     /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 960 wide.
     #[arg(long, value_parser = parse_size)]
@@ -44,9 +44,8 @@ pub struct Args {
     /// The oracle's tolerance, where nothing is a finite sum.
     #[arg(long, default_value_t = 1e-4)]
     tolerance: f64,
-    /// Also write all figures as JSON.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: Figures,
     /// Also draw error against time, as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -54,7 +53,7 @@ pub struct Args {
 
 /// Measures, prints and writes.
 pub fn run(args: &Args) -> Result<()> {
-    let scene = Scene::from_path(&args.scene).map_err(bad_input)?;
+    let scene = shipped::scene(&args.scene).map_err(bad_input)?;
     let still = scene.still();
     let pixel = match args.pixel {
         PixelName::Area => Pixel::Area,
@@ -85,14 +84,12 @@ pub fn run(args: &Args) -> Result<()> {
     bar.finish_and_clear();
     let report = report.map_err(render_error)?;
     // Files first: a closed pipe on the tables loses nothing.
-    if let Some(path) = &args.json {
-        file::write_atomic(path, serde_json::to_string_pretty(&report)?.as_bytes()).map_err(render_error)?;
-    }
+    args.figures.give(&report)?;
     if let Some(path) = &args.plot {
         let name = args.scene.file_stem().unwrap_or_default().to_string_lossy();
         file::write_atomic(path, svg(&figure(&report, &name))?.as_bytes()).map_err(render_error)?;
     }
-    print(&text(&report))
+    args.figures.say(&text(&report))
 }
 
 fn measured(result: &CaseReport) -> Option<&Measured> {

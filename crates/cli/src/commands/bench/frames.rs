@@ -1,18 +1,15 @@
 //! `kelir bench frames`.
 
-use std::path::Path;
-
 use anyhow::Result;
 use kelir_render::bench::{self, Case, CaseReport, Saving, Scaled};
 use kelir_render::{Backend, Technique};
 
-use super::write_json;
 use crate::bad_input;
 use crate::commands::drawing::{Drawing, render_error};
-use crate::output::{print, table};
+use crate::output::{Figures, table};
 
 /// Prints the frames a second of the four cases and what bounds each, what each skip saves, and on request how all of it scales.
-pub fn run(drawing: &Drawing, count: usize, with_scaling: bool, json: Option<&Path>) -> Result<()> {
+pub fn run(drawing: &Drawing, count: usize, with_scaling: bool, figures: &Figures) -> Result<()> {
     if count == 0 {
         return Err(bad_input("frames = 0: at least one frame is drawn"));
     }
@@ -23,12 +20,12 @@ pub fn run(drawing: &Drawing, count: usize, with_scaling: bool, json: Option<&Pa
     let report =
         bench::frames(&mut scene, &technique, drawing.backend, &view, count, &cases).map_err(render_error)?;
     let [width, height] = report.size;
-    print(&format!("{width}x{height}, {} frames a case, {}\n", report.frames, report.adapter))?;
+    figures.say(&format!("{width}x{height}, {} frames a case, {}\n", report.frames, report.adapter))?;
     let header =
         ["case", "frames/s", "median ms", "p99 ms", "fill ms", "median/fill", "bound by", "steps, ms"];
-    print(&table(&header, &report.cases.iter().map(case_line).collect::<Vec<_>>()))?;
+    figures.say(&table(&header, &report.cases.iter().map(case_line).collect::<Vec<_>>()))?;
     if scene.timeline().is_none() {
-        print("\nThe scene has no [timeline]: no puppet is posed.")?;
+        figures.say("\nThe scene has no [timeline]: no puppet is posed.")?;
     }
     let fewer = (count / 4).clamp(5, count.max(5));
     let savings = match (&technique, drawing.backend) {
@@ -40,13 +37,13 @@ pub fn run(drawing: &Drawing, count: usize, with_scaling: bool, json: Option<&Pa
         _ => Vec::new(),
     };
     if !savings.is_empty() {
-        print(
+        figures.say(
             "\nWhat each skip saves of a frame with a slid puppet: all skips, and all but this one, in turn\n",
         )?;
         let header = ["skipped", "how often", "with ms", "without ms", "saves ms"];
-        print(&table(&header, &savings.iter().map(saving_line).collect::<Vec<_>>()))?;
+        figures.say(&table(&header, &savings.iter().map(saving_line).collect::<Vec<_>>()))?;
         let [build, copy] = bench::table(4096, fewer);
-        print(&format!(
+        figures.say(&format!(
             "\nA table of 4096² texels takes {build:.2} ms, copying them to as wide entries {copy:.2} ms: {:.2} x its speed",
             copy / build
         ))?;
@@ -57,10 +54,10 @@ pub fn run(drawing: &Drawing, count: usize, with_scaling: bool, json: Option<&Pa
         Vec::new()
     };
     if with_scaling {
-        print("\nA slid puppet with one thing changed\n")?;
-        print(&table(&["what", "value", "median ms", "frames/s"], &scaled_lines(&scaled)))?;
+        figures.say("\nA slid puppet with one thing changed\n")?;
+        figures.say(&table(&["what", "value", "median ms", "frames/s"], &scaled_lines(&scaled)))?;
     }
-    write_json(json, &serde_json::json!({ "frames": report, "savings": savings, "scaling": scaled }))
+    figures.give(&serde_json::json!({ "frames": report, "savings": savings, "scaling": scaled }))
 }
 
 fn case_line(case: &CaseReport) -> Vec<String> {

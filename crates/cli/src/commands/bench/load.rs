@@ -1,6 +1,5 @@
 //! `kelir bench load`: durable answers a second, against a plain server that stores the same rows, and how long people wait.
 
-use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::{Context, Result};
@@ -8,7 +7,7 @@ use kelir_render::Isa;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::output::{print, table};
+use crate::output::{Figures, table};
 
 mod client;
 mod sides;
@@ -37,9 +36,8 @@ pub struct Args {
     /// Leave the rival out: it needs node, npm and the network.
     #[arg(long)]
     alone: bool,
-    /// Also write the figures as JSON.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: Figures,
 }
 
 /// Starts that are measured at each number of sessions.
@@ -49,21 +47,21 @@ const PACE: Duration = Duration::from_secs(2);
 
 /// One line of figures.
 #[derive(Serialize)]
-struct Figures {
+struct Line {
     what: String,
     per_s: f64,
     p50_ms: f64,
     p99_ms: f64,
 }
 
-impl Figures {
-    fn of(what: String, times: &Times) -> Figures {
+impl Line {
+    fn of(what: String, times: &Times) -> Line {
         let [p50_ms, p99_ms] = [0.5, 0.99].map(|q| times.quantile_ms(q));
-        Figures { what, per_s: times.per_s, p50_ms, p99_ms }
+        Line { what, per_s: times.per_s, p50_ms, p99_ms }
     }
 
     fn row(&self) -> Vec<String> {
-        let Figures { what, per_s, p50_ms, p99_ms } = self;
+        let Line { what, per_s, p50_ms, p99_ms } = self;
         vec![what.clone(), format!("{per_s:.0}"), format!("{p50_ms:.1}"), format!("{p99_ms:.1}")]
     }
 }
@@ -73,10 +71,10 @@ pub fn run(args: &Args) -> Result<()> {
     // One thread asks: what a second one would take is the servers'.
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let figures = runtime.block_on(measure(args))?;
-    print(&format!("Instruction set {}; {} threads.", Isa::detect().name(), threads()))?;
-    print(&table(
+    args.figures.say(&format!("Instruction set {}; {} threads.", Isa::detect().name(), threads()))?;
+    args.figures.say(&table(
         &["what", "a second", "p50 ms", "p99 ms"],
-        &figures.iter().map(Figures::row).collect::<Vec<_>>(),
+        &figures.iter().map(Line::row).collect::<Vec<_>>(),
     ))?;
     let best = |name: &str| {
         let of = figures.iter().filter(|figures| figures.what.starts_with(name));
@@ -88,14 +86,14 @@ pub fn run(args: &Args) -> Result<()> {
             own / rival
         ))?;
     }
-    super::write_json(args.json.as_deref(), &figures)
+    args.figures.give(&figures)
 }
 
 fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, |n| n.get())
 }
 
-async fn measure(args: &Args) -> Result<Vec<Figures>> {
+async fn measure(args: &Args) -> Result<Vec<Line>> {
     let mut sides = vec![sides::kelir()?];
     if !args.alone {
         sides.push(sides::express()?);
@@ -105,14 +103,14 @@ async fn measure(args: &Args) -> Result<Vec<Figures>> {
         for side in &sides {
             let sessions = begin(side, args.answers.div_ceil(ITEMS)).await?.0;
             let times = saturate(side.address, args.connections, answers(&sessions)).await?.1;
-            figures.push(Figures::of(format!("answers, {}, round {round}", side.name), &times));
+            figures.push(Line::of(format!("answers, {}, round {round}", side.name), &times));
         }
     }
     for side in &sides {
         let sessions = begin(side, 2 * args.people).await?.0;
         let people = sessions.chunks_exact(2).map(answers).collect();
         let times = pace(side.address, people, PACE).await?;
-        figures.push(Figures::of(format!("{} people, {}", args.people, side.name), &times));
+        figures.push(Line::of(format!("{} people, {}", args.people, side.name), &times));
     }
     drop(sides);
     let side = sides::kelir()?;
@@ -120,9 +118,9 @@ async fn measure(args: &Args) -> Result<Vec<Figures>> {
     while size <= args.sessions {
         begin(&side, size.saturating_sub(held)).await?;
         let (sessions, times) = begin(&side, STARTS).await?;
-        figures.push(Figures::of(format!("starts, {size} sessions held"), &times));
+        figures.push(Line::of(format!("starts, {size} sessions held"), &times));
         let times = saturate(side.address, args.connections, answers(&sessions)).await?.1;
-        figures.push(Figures::of(format!("answers, {size} sessions held"), &times));
+        figures.push(Line::of(format!("answers, {size} sessions held"), &times));
         held = held.max(size) + STARTS;
         size *= 10;
     }

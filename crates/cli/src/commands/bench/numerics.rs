@@ -1,14 +1,12 @@
 //! `kelir bench numerics`.
 
-use std::path::Path;
-
 use anyhow::{Result, bail};
 use kelir_render::numerics;
+use serde_json::json;
 
-use super::write_json;
 use crate::bad_input;
 use crate::commands::drawing::render_error;
-use crate::output::{print, table};
+use crate::output::{Figures, table};
 
 /// An error to two digits.
 fn error(value: f64) -> String {
@@ -16,7 +14,7 @@ fn error(value: f64) -> String {
 }
 
 /// The renderer's stress cases.
-pub fn renderer(most: usize, json: Option<&Path>) -> Result<()> {
+pub fn renderer(most: usize, figures: &Figures) -> Result<()> {
     let cases = numerics::cases(most);
     if cases.is_empty() {
         return Err(bad_input(format!(
@@ -31,7 +29,7 @@ pub fn renderer(most: usize, json: Option<&Path>) -> Result<()> {
         bar.inc(1);
     }
     bar.finish_and_clear();
-    print(
+    figures.say(
         "Visibility against the oracle: the largest error of PA as it draws; of exact boxes on each kind of table; of f32 corners and blends\n\
          on the exact table. Radiance: of full scale. Bytes: sRGB bytes that differ from the oracle's, of the pixels compared.\n",
     )?;
@@ -53,8 +51,8 @@ pub fn renderer(most: usize, json: Option<&Path>) -> Result<()> {
     let (off, pixels) = parallel().fold((0, 0), |(o, p), r| (o + r.bytes_off, p + r.pixels));
     last.extend([format!("{off}/{pixels}"), String::new()]);
     lines.push(last);
-    print(&table(&header, &lines))?;
-    print("\nE⁰ against mpmath: the largest relative error\n")?;
+    figures.say(&table(&header, &lines))?;
+    figures.say("\nE⁰ against mpmath: the largest relative error\n")?;
     let emitters = numerics::emitters();
     let lines: Vec<Vec<String>> = emitters
         .iter()
@@ -65,10 +63,10 @@ pub fn renderer(most: usize, json: Option<&Path>) -> Result<()> {
             [vec![name, e.points.to_string()], errors.to_vec()].concat()
         })
         .collect();
-    print(&table(&["emitter", "points", "kelir", "closed form, f64", "closed form, f32"], &lines))?;
+    figures.say(&table(&["emitter", "points", "kelir", "closed form, f64", "closed form, f32"], &lines))?;
     let impossible: usize = rows.iter().map(|row| row.impossible).sum();
     let failed = rows.iter().filter(|row| !row.holds()).count();
-    print(&format!(
+    figures.say(&format!(
         "\n{} cases, {} of them parallel: largest error of PA {} (at most {:e}), {impossible} visibilities that are NaN, negative or above 1,\n\
          {off} of {pixels} bytes differ from the oracle's, {} of them by more than a code or further than {} code from a boundary",
         rows.len(),
@@ -78,7 +76,7 @@ pub fn renderer(most: usize, json: Option<&Path>) -> Result<()> {
         rows.iter().map(|row| if row.parallel { row.bytes_wrong } else { 0 }).sum::<usize>(),
         numerics::NEAR_BOUNDARY,
     ))?;
-    write_json(json, &serde_json::json!({ "cases": rows, "emitters": emitters }))?;
+    figures.give(&json!({ "cases": rows, "emitters": emitters }))?;
     if failed > 0 {
         bail!("{failed} cases do not hold");
     }
@@ -86,9 +84,11 @@ pub fn renderer(most: usize, json: Option<&Path>) -> Result<()> {
 }
 
 /// Error over knobs.
-pub fn curves(json: Option<&Path>) -> Result<()> {
+pub fn curves(figures: &Figures) -> Result<()> {
     let curves = numerics::curves().map_err(render_error)?;
-    print("Error against the oracle over the knob: rms over penumbra / largest; the default is marked *\n")?;
+    figures.say(
+        "Error against the oracle over the knob: rms over penumbra / largest; the default is marked *\n",
+    )?;
     let most = curves.iter().map(|c| c.steps.len()).max().unwrap_or(0);
     let line = |curve: &numerics::Curve| {
         let mut cells = vec![curve.name.clone(), curve.of.to_owned(), curve.knob.to_owned()];
@@ -100,14 +100,15 @@ pub fn curves(json: Option<&Path>) -> Result<()> {
         cells
     };
     let header: Vec<&str> = ["what", "error of", "knob"].into_iter().chain((0..most).map(|_| "")).collect();
-    print(&table(&header, &curves.iter().map(line).collect::<Vec<_>>()))?;
-    write_json(json, &curves)
+    figures.say(&table(&header, &curves.iter().map(line).collect::<Vec<_>>()))?;
+    figures.give(&curves)
 }
 
 /// The statistics.
-pub fn statistics() -> Result<()> {
-    print("Distributions against mpmath: the worst relative error of each function\n")?;
-    let rows: Vec<Vec<String>> = kelir_stats::numerics::worst_errors()?
+pub fn statistics(figures: &Figures) -> Result<()> {
+    figures.say("Distributions against mpmath: the worst relative error of each function\n")?;
+    let worst = kelir_stats::numerics::worst_errors()?;
+    let rows: Vec<Vec<String>> = worst
         .iter()
         .map(|row| {
             vec![
@@ -119,8 +120,9 @@ pub fn statistics() -> Result<()> {
             ]
         })
         .collect();
-    print(&table(&["function", "sizes to", "points", "relative error", "at"], &rows))?;
-    print("\nNIST StRD: digits shared with the certified value, and the most that f64 inputs allow\n")?;
+    figures.say(&table(&["function", "sizes to", "points", "relative error", "at"], &rows))?;
+    figures
+        .say("\nNIST StRD: digits shared with the certified value, and the most that f64 inputs allow\n")?;
     let certified = kelir_stats::numerics::nist()?;
     let rows: Vec<Vec<String>> = certified
         .iter()
@@ -129,7 +131,17 @@ pub fn statistics() -> Result<()> {
             vec![row.set.to_owned(), row.statistic.to_owned(), digits[0].clone(), digits[1].clone()]
         })
         .collect();
-    print(&table(&["set", "statistic", "digits", "ceiling"], &rows))?;
+    figures.say(&table(&["set", "statistic", "digits", "ceiling"], &rows))?;
+    let distributions = worst.iter().map(|row| {
+        json!({ "function": row.function, "sizes_to": row.size_to, "points": row.points, "relative_error": row.relative_error,
+            "arguments": format!("{:?}", row.arguments) })
+    });
+    let nist = certified.iter().map(|row| {
+        json!({ "set": row.set, "statistic": row.statistic, "digits": row.digits(), "ceiling": row.ceiling() })
+    });
+    figures.give(
+        &json!({ "distributions": distributions.collect::<Vec<_>>(), "nist": nist.collect::<Vec<_>>() }),
+    )?;
     if let Some(short) = certified.iter().find(|row| row.digits() < row.ceiling() - 0.5) {
         bail!("{} {} falls short of its ceiling", short.set, short.statistic);
     }

@@ -2,13 +2,15 @@
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use kelir_render::encode;
-use kelir_server::{Library, Made, Maker, Selection, Server, ServerConfig, Task, VersionRef, With, results};
+use kelir_server::{
+    Library, Made, Maker, Selection, Server, ServerConfig, Task, TrustedProxies, VersionRef, With, results,
+};
 use kelir_stats::pairwise::Model;
 use kelir_stats::random::Random;
 use kelir_store::{
@@ -22,7 +24,7 @@ use kelir_study::trials::Role;
 use kelir_study::{StudyDefinition, Trial, TrialPlan};
 use serde::Serialize;
 
-use crate::output::{print, table};
+use crate::output::{Figures, table};
 use crate::{bad_input, progress};
 
 /// Arguments of `kelir bench rows`.
@@ -31,9 +33,8 @@ pub struct Args {
     /// Answers; rounded up to whole participants of thirty.
     #[arg(long, default_value_t = 1_000_000)]
     rows: u64,
-    /// Also write the figures as JSON.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: Figures,
 }
 
 const CONDITIONS: usize = 6;
@@ -75,13 +76,13 @@ pub fn run(args: &Args) -> Result<()> {
     let folder = tempfile::tempdir()?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let report = runtime.block_on(measure(folder.path(), people))?;
-    print(&format!(
+    args.figures.say(&format!(
         "{} answers of {} participants to {} blocks over {} conditions, {} of them excluded by rules; {} threads\n",
         report.rows, report.participants, report.blocks, report.conditions, report.excluded, report.threads
     ))?;
     let seconds = |x: f64| format!("{x:.3}");
     let row = |what: &str, s: f64| vec![what.to_owned(), seconds(s)];
-    print(&table(
+    args.figures.say(&table(
         &["step", "seconds"],
         &[
             row("write them (chain of hashes, payloads)", report.write_s),
@@ -97,7 +98,7 @@ pub fn run(args: &Args) -> Result<()> {
             row("GET results, one answer more", report.http_next_s),
         ],
     ))?;
-    super::write_json(args.json.as_deref(), &report)
+    args.figures.give(&report)
 }
 
 async fn measure(data: &Path, people: u32) -> Result<Report> {
@@ -323,6 +324,7 @@ async fn over_http(data: &Path, served: &Served) -> Result<(f64, f64)> {
         listen: SocketAddr::from(([127, 0, 0, 1], 0)),
         password: Some(PASSWORD.to_owned()),
         secure_cookies: false,
+        trusted_proxies: TrustedProxies::default(),
         maker: Arc::new(Nobody),
         progress: Arc::new(|_| {}),
     })

@@ -1,0 +1,51 @@
+//! What checks of several files find, as text or as one JSON document.
+
+use std::path::Path;
+
+use anyhow::Result;
+use serde_json::{Value, json};
+
+use crate::BadInput;
+use crate::output::{print, print_json};
+
+/// What was found so far. Exit code 2 once something is wrong.
+pub struct Checked {
+    json: bool,
+    files: Vec<Value>,
+    problems: Vec<String>,
+}
+
+impl Checked {
+    /// Nothing yet.
+    pub fn new(json: bool) -> Checked {
+        Checked { json, files: Vec::new(), problems: Vec::new() }
+    }
+
+    /// A file that is good; `details` says what it is, for people and for programs.
+    pub fn good(&mut self, file: &Path, details: &str, about: Value) -> Result<()> {
+        self.files.push(
+            json!({ "file": file.display().to_string(), "good": true, "about": about, "problems": [] }),
+        );
+        if self.json { Ok(()) } else { print(&format!("{}: good ({details})", file.display())) }
+    }
+
+    /// A file that is wrong: as text, and problem by problem.
+    pub fn wrong(&mut self, file: &Path, text: String, problems: Vec<Value>) {
+        self.files.push(json!({ "file": file.display().to_string(), "good": false, "problems": problems }));
+        self.problems.push(text);
+    }
+
+    /// A file that could not be read at all.
+    pub fn unreadable(&mut self, file: &Path, rule: String) {
+        let problem = json!({ "file": file.display().to_string(), "field": "", "value": null, "rule": rule });
+        self.wrong(file, rule, vec![problem]);
+    }
+
+    /// Prints what is left to print.
+    pub fn finish(self) -> Result<()> {
+        if self.json {
+            print_json(&self.files)?;
+        }
+        if self.problems.is_empty() { Ok(()) } else { Err(BadInput(self.problems.join("\n")).into()) }
+    }
+}

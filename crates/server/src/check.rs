@@ -1,0 +1,144 @@
+//! Whether a study can be served: all that it names is opened, and each picture is tried in a small size.
+
+use crate::error::StudyFileError;
+use crate::library::{Library, beside};
+use crate::making::{Task, tasks};
+use crate::{picture, render};
+use kelir_render::RenderError;
+use kelir_study::{Block, Condition, Item, Kind, Problem, StudyDefinition};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, ErrorKind};
+use std::path::Path;
+
+/// Reads and checks any study file with all that it names, as serving does, and tries each picture in a small size. Files are looked for below
+/// the parent of the study's folder when that is called `studies`, else below the folder itself, and then among the built-in ones.
+///
+/// # Errors
+/// It cannot be read, or everything that is wrong with it.
+pub fn check_study(file: &Path) -> Result<StudyDefinition, StudyFileError> {
+    let unreadable = |source| StudyFileError::Unreadable { path: file.to_owned(), source };
+    let whole = file.canonicalize().map_err(unreadable)?;
+    let parts = (whole.parent(), whole.file_name().and_then(|name| name.to_str()));
+    let (Some(folder), Some(name)) = parts else {
+        return Err(unreadable(io::Error::new(ErrorKind::InvalidInput, "is no file with a readable name")));
+    };
+    match folder.parent() {
+        Some(root) if folder.file_name().is_some_and(|name| name == "studies") => {
+            Library::new(root).rehearsed(&format!("studies/{name}"))
+        }
+        _ => Library::new(folder).rehearsed(name),
+    }
+}
+
+/// Problems as they are found, each said once.
+struct Found<'a> {
+    file: &'a str,
+    problems: Vec<Problem>,
+}
+
+impl Found<'_> {
+    fn add(&mut self, field: String, value: Option<&str>, rule: impl Into<String>) {
+        let value = value.map(|v| format!("{v:?}"));
+        let problem = Problem { file: self.file.to_owned(), field, value, rule: rule.into() };
+        if !self.problems.contains(&problem) {
+            self.problems.push(problem);
+        }
+    }
+}
+
+/// What is wrong with what a study names: conditions' settings, picture files, scenes.
+pub(crate) fn problems_around(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
+    let mut found = Found { file, problems: Vec::new() };
+    for (name, condition) in &study.conditions {
+        let field = format!("conditions.{name}");
+        match condition {
+            Condition::Rendered { technique, knobs, camera } => {
+                if let Err(rule) = render::technique(technique, knobs) {
+                    found.add(field.clone(), None, rule);
+                }
+                if let Some(Err(rule)) = camera.as_ref().map(render::camera) {
+                    found.add(format!("{field}.camera"), None, rule);
+                }
+            }
+            Condition::Files { files } => {
+                for (item, path) in files {
+                    let rules = match library.read(&beside(file, path)) {
+                        Ok(bytes) => picture::broken(path, &bytes, study.size),
+                        Err(error) => vec![error.to_string()],
+                    };
+                    rules
+                        .into_iter()
+                        .for_each(|rule| found.add(format!("{field}.files.{item}"), Some(path), rule));
+                }
+            }
+        }
+    }
+    let (mut wrong, mut refused) = (Vec::new(), BTreeSet::new());
+    for (block, item, field) in items(study) {
+        let Some(named) = &item.scene else { continue };
+        let path = beside(file, named);
+        match library.scene_facts(&path) {
+            Ok(facts) if !facts.moves && block.kind == Kind::Animation => {
+                found.add(
+                    format!("{field}.scene"),
+                    Some(named),
+                    "has no [timeline]; the block shows animations",
+                );
+            }
+            Ok(_) => {}
+            // Its problems are told once, however many items show it.
+            Err(problems) if refused.insert(path.clone()) => wrong.extend(problems),
+            Err(_) => {}
+        }
+    }
+    found.problems.extend(wrong);
+    found.problems
+}
+
+/// What keeps pictures from being drawn, found by drawing each in a small size. What [`problems_around`] finds is not said again.
+pub(crate) fn problems_drawing(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
+    let mut found = Found { file, problems: Vec::new() };
+    let fields: BTreeMap<&str, String> =
+        items(study).map(|(_, item, field)| (item.id.as_str(), field)).collect();
+    // Reading a scene takes longer than drawing it small: each is read once.
+    let mut by_scene: BTreeMap<String, Vec<Task<'_>>> = BTreeMap::new();
+    for task in tasks(study) {
+        if let (Condition::Rendered { .. }, Some(named)) = (task.condition, &task.pair.scene) {
+            by_scene.entry(beside(file, named)).or_default().push(task);
+        }
+    }
+    for (path, tasks) in by_scene {
+        let Ok(mut scene) = library.scene(&path) else { continue };
+        for task in tasks {
+            let drawn;
+            (scene, drawn) = render::rehearse(&task, scene);
+            match drawn {
+                Ok(()) => {}
+                // The size is the study's: told once for all scenes of one screen.
+                Err(RenderError::View(rule)) => {
+                    let parts = rule.strip_prefix("size = ").and_then(|rule| rule.split_once(": "));
+                    let (value, rule) =
+                        parts.map_or((None, rule.as_str()), |(value, rule)| (Some(value), rule));
+                    found.add("size".to_owned(), value, rule);
+                }
+                Err(error) => {
+                    let field = fields.get(task.pair.id.as_str()).cloned().unwrap_or_default();
+                    found.add(
+                        field,
+                        Some(&task.pair.id),
+                        format!("cannot be drawn under condition {}: {error}", task.name),
+                    );
+                }
+            }
+        }
+    }
+    found.problems
+}
+
+/// Every item with its block and the path of its field.
+fn items(study: &StudyDefinition) -> impl Iterator<Item = (&Block, &Item, String)> {
+    study.blocks.iter().enumerate().flat_map(|(i, block)| {
+        let field = move |j: usize| format!("blocks[{i}].{}[{j}]", block.items_key);
+        block.items.iter().enumerate().map(move |(j, item)| (block, item, field(j)))
+    })
+}

@@ -1,0 +1,126 @@
+/** How one trial is taken, whatever its kind: the first answer that counts, and all that is said of how it came about. */
+import type { Schemas } from "../../api.ts";
+import { rounded } from "../../clock.ts";
+import type { Rules } from "../../inputs/guard.ts";
+import { type Given, inputs } from "../../inputs/watch.ts";
+import { eventLog } from "./events.ts";
+import { hiddenTime } from "./hidden.ts";
+import { offered } from "../../inputs/offered.ts";
+
+export type Geometry = Schemas["Geometry"];
+/** What can be chosen: the role of a stimulus. */
+type Chosen = Schemas["Role"];
+
+export interface Choice<Role extends Chosen> {
+  role: Role;
+  input: Given["input"];
+  /** `performance.now()` of the hand's own movement, ms. */
+  at: number;
+}
+
+export interface Options<Role extends Chosen> {
+  root: HTMLElement;
+  buttons: Record<Role, HTMLButtonElement>;
+  /** `KeyboardEvent.key` → answer, as it is now. */
+  keys(): Record<string, Role>;
+  /** How the stimuli stand now. */
+  geometry(): Geometry;
+  rules: Rules;
+  /** jsPsych's simulation presses buttons by script, which nobody else may. */
+  simulated: boolean;
+}
+
+export class Taking<Role extends Chosen> {
+  readonly #options: Options<Role>;
+  readonly #log = eventLog();
+  readonly #listening = new AbortController();
+  #onset = Number.POSITIVE_INFINITY;
+  #hiddenMs = () => 0;
+  #atOnset: Geometry | null = null;
+  /** As far as the log knows. */
+  #last = "";
+  #choice: Choice<Role> | null = null;
+  #chosen: (choice: Choice<Role>) => void = () => {};
+
+  constructor(options: Options<Role>) {
+    this.#options = options;
+    const { signal } = this.#listening;
+    for (const [role, button] of Object.entries<HTMLButtonElement>(options.buttons) as Array<[Role, HTMLButtonElement]>) {
+      button.addEventListener("click", (event) => this.#attempt(role, inputs.click(event)), { signal });
+    }
+    document.addEventListener("keydown", (event) => this.#key(event), { signal });
+    // A pinch changes what is seen without moving anything.
+    globalThis.visualViewport?.addEventListener("resize", () => this.resized(), { signal });
+  }
+
+  /** From `onset` on, a frame's time, the stimuli can be answered. */
+  open(onset: number): void {
+    this.#onset = onset;
+    this.#hiddenMs = hiddenTime(this.#listening.signal);
+    this.#atOnset = this.#options.geometry();
+    this.#last = JSON.stringify(this.#atOnset);
+    offered(Object.values(this.#options.buttons), () => this.#wait(), this.#listening.signal);
+  }
+
+  /** The stimuli may stand otherwise than before. */
+  resized(): void {
+    const geometry = this.#options.geometry();
+    const now = JSON.stringify(geometry);
+    if (now !== this.#last) this.#log.add({ event: "resize", ...geometry });
+    this.#last = now;
+  }
+
+  /** The first answer that counts. */
+  choice(): Promise<Choice<Role>> {
+    return new Promise((resolve) => {
+      this.#chosen = resolve;
+      if (this.#choice !== null) resolve(this.#choice);
+    });
+  }
+
+  /** What is stored of how the answer came about, but for what its kind says itself. */
+  told({ input, at }: Choice<Role>, periodMs: number | null) {
+    const now = this.#options.geometry();
+    const changed = this.#atOnset !== null && JSON.stringify(now) !== JSON.stringify(this.#atOnset);
+    return {
+      rt: rounded(at - this.#onset),
+      onset: rounded(this.#onset),
+      input,
+      ...now,
+      refresh_hz: periodMs === null ? null : rounded(1000 / periodMs),
+      hidden_ms: rounded(this.#hiddenMs()),
+      geometry_changed: changed ? 1 : 0,
+      ...(changed && { at_onset: this.#atOnset as Geometry }),
+      ...this.#log.carry(this.#onset),
+    };
+  }
+
+  /** Listens no more. What is pressed until then is logged for the next answer. */
+  close(): void {
+    this.#listening.abort();
+  }
+
+  #key(event: KeyboardEvent): void {
+    if (event.altKey || event.ctrlKey || event.metaKey || event.shiftKey || !this.#options.root.isConnected) return;
+    const keys = this.#options.keys();
+    const role = Object.hasOwn(keys, event.key) ? keys[event.key] : undefined;
+    if (role === undefined) return;
+    event.preventDefault();
+    this.#attempt(role, inputs.key(event));
+  }
+
+  #attempt(role: Role, given: Given): void {
+    const { rules, simulated } = this.#options;
+    const visibleMs = given.press.at - this.#onset - this.#hiddenMs();
+    const reason = this.#choice === null ? inputs.judge(given, rules, visibleMs, simulated) : "answered";
+    if (reason !== null) return this.#log.add({ event: "ignored", reason, input: given.input, choice: role }, given.at);
+    this.#choice = { role, input: given.input, at: given.at };
+    this.#chosen(this.#choice);
+  }
+
+  /** How long an answer that began now would not count yet, ms. */
+  #wait(): number {
+    const visibleMs = performance.now() - this.#onset - this.#hiddenMs();
+    return Math.max(this.#options.rules.min_visible_ms - visibleMs, inputs.gapLeft(this.#options.rules));
+  }
+}
