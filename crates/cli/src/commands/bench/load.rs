@@ -81,7 +81,7 @@ pub fn run(args: &Args) -> Result<()> {
         of.map(|figures| figures.per_s).max_by(f64::total_cmp)
     };
     if let (Some(own), Some(rival)) = (best("answers, kelir"), best("answers, Express")) {
-        print(&format!(
+        args.figures.say(&format!(
             "kelir stores {:.1} times as many answers a second, best round against best.",
             own / rival
         ))?;
