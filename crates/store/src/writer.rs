@@ -136,7 +136,7 @@ fn work(messages: &Receiver<Message>, open: &dyn Fn() -> Result<Connection, Stor
             Ok(())
         });
         for job in group {
-            job.settle(committed.as_ref().map(|()| ()).map_err(StoreError::told));
+            job.settle(committed.as_ref().copied().map_err(StoreError::told));
         }
         if let Some(done) = close {
             drop(kept);

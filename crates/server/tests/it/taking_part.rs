@@ -124,10 +124,10 @@ async fn whatever_a_browser_or_its_clock_makes_of_an_answer_is_stored_and_the_co
 async fn a_session_knows_what_its_browser_called_itself() {
     let client = Client::ready().await;
     let named = |name: Vec<u8>| {
-        axum::http::Request::post("/api/v1/studies/shadow-puppets/sessions")
+        Request::post("/api/v1/studies/shadow-puppets/sessions")
             .header("content-type", "application/json")
             .header("user-agent", axum::http::HeaderValue::from_bytes(&name).unwrap())
-            .body(axum::body::Body::from("{}"))
+            .body(Body::from("{}"))
             .unwrap()
     };
     for (sent, kept) in [
