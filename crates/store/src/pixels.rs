@@ -21,7 +21,7 @@ pub(crate) struct Pixels {
 /// # Errors
 /// Why it cannot be decoded, as a sentence's end.
 pub fn picture_size(bytes: &[u8]) -> Result<[u32; 2], String> {
-    decode(bytes).map(|image| [image.width(), image.height()])
+    decode(bytes).map(|(image, _)| [image.width(), image.height()])
 }
 
 /// An animation's manifest, as far as it says what is shown.
