@@ -2,8 +2,9 @@
 import { initJsPsych, type JsPsych } from "jspsych";
 import { h, paragraphs } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
-import type { Study, Trial } from "./api.ts";
+import type { Trial } from "./api.ts";
 import { measureRefresh } from "./display.ts";
+import { inLanguage, type Reading } from "./language.ts";
 import { say } from "./notice.ts";
 import { askAgain, consentContent, display, Ended, instructionsContent, showThanks } from "./pages.ts";
 import { position } from "./plan.ts";
@@ -23,7 +24,7 @@ type Node = Record<string, unknown> & { on_finish: () => Promise<void> };
 const PATIENCE_MS = 400;
 
 export class Visit {
-  readonly #found: Study;
+  readonly #found: Reading;
   readonly #session: Session;
   readonly #tab: Tab;
   readonly #jsPsych = initJsPsych({ display_element: display });
@@ -36,15 +37,16 @@ export class Visit {
   #refresh: Promise<number | null> | null = null;
   #instructed = false;
 
-  constructor(study: Study, session: Session, tab: Tab) {
+  constructor(study: Reading, session: Session, tab: Tab) {
     this.#found = study;
     this.#session = session;
     this.#tab = tab;
   }
 
-  /** The study as it was when the session began; before that, as it is now. */
-  get #study(): Study {
-    return this.#session.state?.study ?? this.#found;
+  /** The study as it was when the session began, in its language; before that, as it is now. */
+  get #study(): Reading {
+    const { state } = this.#session;
+    return state === null ? this.#found : inLanguage(state.study, state.language);
   }
 
   async run(): Promise<void> {
@@ -77,12 +79,12 @@ export class Visit {
     return {
       type: TextPage,
       heading: this.#study.title,
-      content: () => consentContent(this.#study),
+      content: () => consentContent(this.#study, this.#session.state === null),
       button: words("consent-agree"),
       testid: "consent-agree",
       rules: rulesOf(this.#study),
       action: async () => {
-        await this.#session.consent();
+        await this.#session.consent(this.#study.reading);
         this.#tab.has(this.#session.id);
         this.#loader.ahead(this.#session.remaining);
       },

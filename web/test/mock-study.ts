@@ -28,6 +28,31 @@ export const study: Omit<Study, "trial_kinds"> = {
     ],
     thanks: ["You have finished. Thank you for your time and your eyes."],
   },
+  language: "en",
+  translations: {
+    de: {
+      title: "Schatten auf einer Leinwand",
+      question: "Welches Bild ist eher echt?",
+      texts: {
+        welcome: ["In dieser Studie sehen Sie Paare von Bildern und wählen jeweils eines."],
+        consent: ["Die Teilnahme ist freiwillig. Fragen beantwortet studie@example.org, mehr steht auf https://example.org/schatten."],
+        instructions: ["Wählen Sie in jedem Paar ein Bild."],
+        debriefing: ["Alle Bilder waren berechnet."],
+        thanks: ["Das war das letzte Paar."],
+      },
+    },
+    ar: {
+      title: "ظلال على شاشة",
+      question: "أي الصورتين أقرب إلى أن تكون حقيقية؟",
+      texts: {
+        welcome: ["في هذه الدراسة ترى أزواجًا من الصور وتختار صورة من كل زوج."],
+        consent: ["المشاركة طوعية. للأسئلة: studie@example.org، والمزيد في https://example.org/shadows."],
+        instructions: ["اختر صورة من كل زوج."],
+        debriefing: ["كل الصور محسوبة بالحاسوب."],
+        thanks: ["كان هذا الزوج الأخير."],
+      },
+    },
+  },
 };
 
 /** A trial of the plan, before anybody answers. */

@@ -220,7 +220,7 @@ async fn intact(store: &Store, job_key: &str) -> Result<Option<(StimulusInfo, Va
 }
 
 /// The frames that a manifest names, each once.
-fn frames(manifest: &[u8]) -> Vec<String> {
+pub(crate) fn frames(manifest: &[u8]) -> Vec<String> {
     let manifest: Value = serde_json::from_slice(manifest).unwrap_or_default();
     let mut frames: Vec<String> = manifest["frames"]
         .as_array()

@@ -10,6 +10,7 @@ mod error;
 mod files;
 mod first_chain;
 mod import;
+mod integrity;
 mod layout;
 mod packing;
 mod packings;

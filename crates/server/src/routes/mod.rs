@@ -74,6 +74,7 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(document::get_docs),
         routes!(document::get_docs_style),
         routes!(health::get_health),
+        routes!(health::get_integrity),
     ]
 }
 
@@ -93,14 +94,19 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/api/v1/sessions/{session}/complete", post(sessions::complete_session))
         .route("/", get(pages::get_root))
         .route("/study/{study}", get(pages::get_participant))
+        .route("/study/{study}/", get(pages::without_slash))
         .route("/console", get(pages::get_console))
+        .route("/console/", get(pages::without_slash))
         .route("/console/{*path}", get(pages::get_console))
         .route("/assets/{*path}", get(pages::get_asset))
         .fallback(not_found)
         .method_not_allowed_fallback(method_not_allowed)
         .layer(DefaultBodyLimit::max(BODY_LIMIT))
+        .layer(middleware::from_fn(headers::same_site))
+        .layer(middleware::from_fn(headers::for_people))
         .layer(CompressionLayer::new().compress_when(compressible))
         .layer(middleware::from_fn(headers::secure))
+        .layer(middleware::from_fn(headers::note_route))
         .with_state(app)
 }
 

@@ -28,7 +28,7 @@ pub(crate) struct PreviewPath {
 }
 
 /// Begins a preview of a study as it is served now.
-pub(super) async fn begin(app: &App, begun: Begun) -> Result<CreatedSession, Box<Problem>> {
+pub(super) async fn begin(app: &App, begun: Begun, language: Option<&str>) -> Result<CreatedSession, Box<Problem>> {
     // Each preview has a plan of its own, so that restarting shows other orders and sides.
     let slot =
         u32::from_le_bytes(uuid::Uuid::new_v4().into_bytes()[..4].try_into().unwrap_or_default()) >> 12;
@@ -37,6 +37,7 @@ pub(super) async fn begin(app: &App, begun: Begun) -> Result<CreatedSession, Box
     let preview = Preview {
         token_hash: sha256_hex(token.as_bytes()),
         trials: planned(&begun.stimuli, trials)?,
+        language: begun.study.language_for(language).to_owned(),
         begun,
         slot,
         more,
@@ -190,8 +191,10 @@ fn state_of(id: &str, preview: &Preview) -> Untold {
         session_id: id.to_owned(),
         study_id: study.id.clone(),
         study: told(study),
+        language: preview.language.clone(),
         status,
         named: false,
+        language: study.language.clone(),
         consented: preview.consented,
         more: preview.more,
         most_trials: if preview.more { study.most_trials() } else { preview.trials.len() },

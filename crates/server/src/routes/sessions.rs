@@ -67,7 +67,8 @@ pub(crate) async fn create_session(
     let visit = links::visit(&app, &loaded.study.id, &pairs, researcher.is_some())?;
     if visit == Visit::Preview {
         let begun = crate::app::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
-        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun).await?)));
+        let language = new.display.as_ref().and_then(|display| display.get("language")?.as_str());
+        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun, language).await?)));
     }
     let is_pilot = visit == Visit::Pilot;
     let kind = if is_pilot { SessionKind::Pilot } else { new.kind.unwrap_or_default() };
@@ -163,7 +164,9 @@ pub(crate) async fn give_consent(
     Participant(session): Participant,
     State(app): State<Arc<App>>,
 ) -> Answered<SessionState> {
-    let text = app.begun(&session).await?.study.texts.consent.join("\n\n");
+    let study = app.begun(&session).await?.study;
+    // The text that was read, in the language in which it was.
+    let text = study.texts_in(language(&study, &session)).consent.join("\n\n");
     app.store.consent(&session.session_id, &sha256_hex(text.as_bytes())).await?;
     let session = app.store.session(&session.session_id).await?;
     let session = session.ok_or_else(|| Problem::internal("a session is gone"))?;
@@ -307,6 +310,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         session_id: session.session_id.clone(),
         study_id: session.study_id.clone(),
         study: told(&study),
+        language: language(&study, session).to_owned(),
         status,
         named: session.subject_id != session.session_id,
         consented: session.consented_at.is_some(),
@@ -317,6 +321,11 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         completion_code,
         redirect: redirect.flatten(),
     })
+}
+
+/// The language in which a session is taken.
+fn language<'a>(study: &'a StudyDefinition, session: &'a Session) -> &'a str {
+    study.language_for(session.display.get("language").and_then(serde_json::Value::as_str))
 }
 
 pub(super) async fn trials_of(

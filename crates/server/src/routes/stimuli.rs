@@ -1,6 +1,6 @@
 //! Stimuli, immutable: to sessions under addresses of their own, to researchers by hash.
 
-use crate::api::{Problem, refusals};
+use crate::api::{Problem, ProblemCode, refusals};
 use crate::app::App;
 use crate::content;
 use crate::extract::{Parameters, Researcher};
@@ -35,7 +35,7 @@ pub(crate) struct StimulusPath {
 #[expect(dead_code, reason = "only the document speaks of it")]
 struct Bytes(Vec<u8>);
 
-refusals!(NoStimulus: NotFound);
+refusals!(NoStimulus: NotFound, NotReady);
 
 /// The bytes of a stimulus as a session gets them; they never change. The address is the permission.
 ///
@@ -63,11 +63,18 @@ pub(crate) async fn get_session_stimulus(
     if let Some(unchanged) = content::unchanged(&headers, &etag) {
         return Ok(unchanged);
     }
-    let parts = app.presenter.bytes(&app.store, &presented).await?;
+    let parts = app.presenter.bytes(&app.store, &presented).await.map_err(|_| damaged(&app))?;
     Ok(content::answer(&headers, &etag, PACKED, parts))
 }
 
-refusals!(Stimulus: NotFound, Unauthorized);
+/// What is told of bytes that are gone or damaged, whose reason the log has; they are looked at soon.
+fn damaged(app: &App) -> Box<Problem> {
+    app.integrity.ask();
+    let detail = "This picture is damaged and is being made again. Please try again in a minute.";
+    Problem::new(ProblemCode::NotReady, detail).retry_after(30)
+}
+
+refusals!(Stimulus: NotFound, NotReady, Unauthorized);
 
 /// The bytes of a stored stimulus, or of one frame of an animation, for researchers; they never change.
 ///
@@ -101,6 +108,7 @@ pub(crate) async fn get_stimulus(
     if let Some(unchanged) = content::unchanged(&headers, &etag) {
         return Ok(unchanged);
     }
-    let bytes = app.presenter.stored(&app.store, &sha256).await?.ok_or_else(missing)?;
+    let bytes =
+        app.presenter.stored(&app.store, &sha256).await.ok().flatten().ok_or_else(|| damaged(&app))?;
     Ok(content::answer(&headers, &etag, &media_type, vec![bytes]))
 }

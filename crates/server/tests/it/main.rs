@@ -3,6 +3,7 @@
 
 mod bad_requests;
 mod client;
+mod front;
 mod making;
 mod openapi;
 mod persons;
