@@ -75,7 +75,8 @@ pub fn event_rows(session: &EventSession<'_>, trial: &Trial, payload: &Value) ->
             viewport_width: event["viewport"][0].as_f64(),
             viewport_height: event["viewport"][1].as_f64(),
         };
-        let own = [serde_json::to_value(belonging), serde_json::to_value(viewport)].map(Result::unwrap_or_default);
+        let own =
+            [serde_json::to_value(belonging), serde_json::to_value(viewport)].map(Result::unwrap_or_default);
         let cell = |column: &Column| {
             let value = own.iter().chain([event]).find_map(|record| record.get(&column.name));
             value.map(plain).unwrap_or_default()

@@ -157,11 +157,13 @@ fn each_event_is_a_row_that_its_codebook_explains_and_pages_of_before_sent_none(
         assert_eq!((cell(row, "subject_id"), cell(row, "event_index")), ("p1", row.to_string().as_str()));
         assert_eq!(cell(row, "trial_index"), trial.trial_index.to_string());
     }
-    assert_eq!(["event", "time_ms", "reason", "input", "choice"].map(|name| cell(0, name)), [
-        "ignored", "-120.5", "answered", "pen", "left"
-    ]);
-    assert_eq!(["viewport_width", "viewport_height", "scale", "arrangement"].map(|name| cell(1, name)), [
-        "390", "844", "0.5", "stack"
-    ]);
+    assert_eq!(
+        ["event", "time_ms", "reason", "input", "choice"].map(|name| cell(0, name)),
+        ["ignored", "-120.5", "answered", "pen", "left"]
+    );
+    assert_eq!(
+        ["viewport_width", "viewport_height", "scale", "arrangement"].map(|name| cell(1, name)),
+        ["390", "844", "0.5", "stack"]
+    );
     assert_eq!((cell(2, "event"), cell(2, "time_ms")), ("blur", ""), "what breaks its rule is empty");
 }
