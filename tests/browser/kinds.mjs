@@ -1,13 +1,13 @@
 // Takes studies of any kind of trial as people would, and looks at what stands on the screen.
 // Argument (JSON): {base, shots, visits: [{name, study, viewport, dpr, input, …}]}, of each visit also
-//   choices: [role, …], or targets: [sha256, …] with right: [whether to choose one of them, …];
+//   choices: [role, …], or targets: [pixels_sha256, …] with right: [whether to choose one of them, …];
 //   shoot: the two-interval trial whose steps are screenshots; reload: [trials shown twice]; reload_after, offline: [trials answered so];
 //   ask_early: the trial at which completion is asked for.
 // Last line of output (JSON): per visit {name, code, trials: [{position, shown, again?, widths, choice}], log, early, said, complaints}.
-import { createHash } from "node:crypto";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { launch } from "./chromium.mjs";
+import { withPixelsHash } from "./pixels.mjs";
 
 const task = JSON.parse(process.argv[2]);
 mkdirSync(task.shots, { recursive: true });
@@ -26,16 +26,15 @@ async function take({ name, study, viewport, dpr = 1, input, choices, targets, r
   const context = await browser.newContext({ viewport, deviceScaleFactor: dpr, hasTouch: touch, isMobile: touch });
   const page = await context.newPage();
   const [trials, log, complaints] = [[], [], []];
-  const files = new Map();
   let token;
   page.on("console", (message) => message.type() === "error" && !message.text().includes("ERR_INTERNET_DISCONNECTED") && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
   page.on("request", (request) => (token ??= request.headers().authorization));
   page.on("response", async (response) => {
     const { pathname } = new URL(response.url());
-    if (pathname.startsWith("/api/v1/sessions/")) log.push({ method: response.request().method(), path: pathname, status: response.status() });
-    if (pathname.startsWith("/stimuli/")) files.set(pathname, null);
+    if (pathname.startsWith("/api/v1/sessions/") && !pathname.includes("/stimuli/")) log.push({ method: response.request().method(), path: pathname, status: response.status() });
   });
+  await page.addInitScript(withPixelsHash);
   await page.addInitScript(record);
   const shot = (label) => page.screenshot({ path: join(task.shots, `participant-${label}-${viewport.width}x${viewport.height}.png`) });
   await page.goto(`${task.base}/study/${study}?PROLIFIC_PID=${name}`);
@@ -58,11 +57,11 @@ async function take({ name, study, viewport, dpr = 1, input, choices, targets, r
       continue;
     }
     const index = trials.length;
-    const trial = await look(page, files);
+    const trial = await look(page);
     if (reload.includes(index)) {
       await page.reload();
       await hook.waitFor();
-      trial.again = await look(page, files);
+      trial.again = await look(page);
     }
     if (index === ask_early) early = await completion(log, token);
     trial.choice = choices?.[index] ?? Object.keys(trial.shown).find((role) => targets.includes(trial.shown[role]) === right[index]);
@@ -99,27 +98,10 @@ function record() {
   new MutationObserver(look).observe(document, { subtree: true, childList: true, characterData: true });
 }
 
-/** Where the trial stands, and of each role the file whose pixels were on the screen, by the SHA-256 of its bytes, and how wide it stood in CSS px. */
-async function look(page, files) {
+/** Where the trial stands, and of each role the pixels that were on the screen, by their hash, and how wide they stood in CSS px. */
+async function look(page) {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  for (const [path, known] of files) if (known === null) files.set(path, await (await page.request.get(`${task.base}${path}`)).body());
-  const pictures = [...files.values()].map((bytes) => ({ sha256: createHash("sha256").update(bytes).digest("hex"), base64: bytes.toString("base64") }));
-  return page.evaluate(async (pictures) => {
-    const pixels = (source, width, height) => {
-      const context = new OffscreenCanvas(width, height).getContext("2d");
-      context.drawImage(source, 0, 0);
-      return new Uint32Array(context.getImageData(0, 0, width, height).data.buffer);
-    };
-    const known = [];
-    for (const { sha256, base64 } of pictures) {
-      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-      const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-      known.push({ sha256, data: pixels(bitmap, bitmap.width, bitmap.height) });
-    }
-    const found = (data) => {
-      const same = known.filter((file) => file.data.length === data.length && file.data.every((pixel, i) => pixel === data[i]));
-      return same.length === 1 ? same[0].sha256 : `${same.length} files have these pixels`;
-    };
+  return page.evaluate(async () => {
     const sides = [...document.querySelectorAll(".pair .picture")].map((button) => {
       const image = button.firstElementChild;
       return [button.dataset.testid.slice(7), { source: image, size: [image.naturalWidth, image.naturalHeight], width: image.getBoundingClientRect().width }];
@@ -129,10 +111,10 @@ async function look(page, files) {
     globalThis.seen = {};
     return {
       position: document.querySelector(".position").textContent,
-      shown: Object.fromEntries(roles.map(([role, { source, size }]) => [role, found(pixels(source, ...size))])),
+      shown: Object.fromEntries(await Promise.all(roles.map(async ([role, { source, size }]) => [role, await globalThis.pixelsHash(source, ...size)]))),
       widths: Object.fromEntries(roles.map(([role, { width }]) => [role, width])),
     };
-  }, pictures);
+  });
 }
 
 /** Screenshots of each step of a two-interval trial, each taken while it lasted. */

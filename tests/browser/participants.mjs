@@ -1,9 +1,10 @@
 // Takes a study as people would: real clicks, taps and keys in Chromium.
 // Argument (JSON): {base, study, shots, participants: [{name, viewport, touch, input, choices, reloadAfter}]}.
-// Last line of output (JSON): per participant {name, code, trials: [{choice, left, right, rt_outside_ms}], console: [...]}.
+// Last line of output (JSON): per participant {name, code, trials: [{choice, left, right}], console: [...]}; left and right are hashes of pixels.
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { launch } from "./chromium.mjs";
+import { withPixelsHash } from "./pixels.mjs";
 
 const task = JSON.parse(process.argv[2]);
 mkdirSync(task.shots, { recursive: true });
@@ -23,6 +24,7 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
   const complaints = [];
   page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
+  await page.addInitScript(withPixelsHash);
   const trials = [];
   const shot = async (label) => {
     const file = join(task.shots, `participant-${label}-${viewport.width}x${viewport.height}.png`);
@@ -39,7 +41,8 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
       // The page must fit: nothing to scroll sideways.
       const overflow = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
       if (overflow > 0) throw new Error(`${name}: the trial page scrolls sideways by ${overflow} px`);
-      const [left, right] = await Promise.all(["choice-left", "choice-right"].map((id) => page.getByTestId(id).getAttribute("data-sha256")));
+      const [left, right] = await Promise.all(["choice-left", "choice-right"].map((id) => shown(page, id)));
+      const told = await sides(page);
       await shot(`trial-${trials.length + 1}`);
       const choice = choices[trials.length];
       if (input === "keyboard") await page.keyboard.press(choice === "left" ? "ArrowLeft" : "ArrowRight");
@@ -48,7 +51,7 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
       await page.waitForFunction(([l, r]) => {
         const shown = document.querySelector('[data-testid="choice-left"]');
         return !shown || shown.dataset.sha256 !== l || document.querySelector('[data-testid="choice-right"]')?.dataset.sha256 !== r;
-      }, [left, right]);
+      }, told);
       if (trials.length === reloadAfter) await page.reload();
     } else if (state === "completion-code") {
       await shot("thanks");
@@ -63,6 +66,16 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
   await context.close();
   return { name, code, trials, complaints };
 }
+
+/** The hash of the pixels of the picture on a button: of a still, or of whichever frame is shown. */
+const shown = (page, id) =>
+  page.getByTestId(id).evaluate((button) => {
+    const picture = button.firstElementChild;
+    return globalThis.pixelsHash(picture, picture.naturalWidth ?? picture.width, picture.naturalHeight ?? picture.height);
+  });
+
+/** What the page was told of the two: the hashes of the bytes that it got. */
+const sides = (page) => Promise.all(["choice-left", "choice-right"].map((id) => page.getByTestId(id).getAttribute("data-sha256")));
 
 /** The test hook of the screen that is shown now. */
 async function current(page) {

@@ -119,7 +119,7 @@ fn a_staircase_in_a_browser_goes_as_levitt_wrote_over_a_reload_and_a_line_that_d
     let results = server.research(&cookie, "/api/v1/studies/adaptive/versions/current/results");
     let stimuli = results["stimuli"].as_array().unwrap();
     let targets: Vec<&Value> =
-        stimuli.iter().filter(|s| s["condition"] == "pa").map(|s| &s["sha256"]).collect();
+        stimuli.iter().filter(|s| s["condition"] == "pa").map(|s| &s["pixels_sha256"]).collect();
     assert_eq!(targets.len(), 10);
     // After a pair, thirteen trials with five reversals (where the procedure ends, long before its most trials), and a pair again.
     let right = "tttttfttfttttft".chars().map(|c| c == 't').collect::<Vec<_>>();
@@ -136,7 +136,7 @@ fn a_staircase_in_a_browser_goes_as_levitt_wrote_over_a_reload_and_a_line_that_d
     assert_eq!((rows.len(), trials.len()), (right.len(), right.len()));
     for (index, ((row, trial), right)) in rows.iter().zip(trials).zip(&right).enumerate() {
         assert_eq!(row.trial_index, index as u64);
-        let hash = |role: &str| row.shown[role]["sha256"].clone();
+        let hash = |role: &str| row.shown[role]["pixels_sha256"].clone();
         assert_eq!(trial["shown"], json!({ "left": hash("left"), "right": hash("right") }), "trial {index}");
         for shown in row.shown.as_object().unwrap().values() {
             let of_item = |s: &&Value| s["item"] == shown["item"] && s["condition"] == shown["condition"];

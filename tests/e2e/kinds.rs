@@ -162,7 +162,7 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
                 ("two-alternative", ["left", "right"])
             };
             assert_eq!(row.kind, kind);
-            let hash = |role: &str| row.shown[role]["sha256"].clone();
+            let hash = |role: &str| row.shown[role]["pixels_sha256"].clone();
             assert_eq!(
                 trial["shown"],
                 json!({ roles[0]: hash(roles[0]), roles[1]: hash(roles[1]) }),

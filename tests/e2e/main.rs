@@ -6,6 +6,7 @@ mod check;
 mod cli;
 mod doors;
 mod film;
+mod front;
 mod invariants;
 mod kinds;
 mod report;

@@ -165,6 +165,15 @@ fn a_report_says_what_the_answers_say_in_every_form() {
         );
     }
 
+    let data = data.path().to_str().unwrap();
+    let people = kelir_ok(&["export", STUDY, "--data", data, "--table", "participants"]);
+    assert_eq!(people.lines().count(), 1 + 33);
+    let sheet = at("answers.xlsx");
+    kelir_ok(&["export", STUDY, "--data", data, "-o", sheet.to_str().unwrap()]);
+    assert!(std::fs::read(&sheet).unwrap().starts_with(b"PK"));
+    let one = kelir(&["export", STUDY, "--data", data, "--table", "pairs", "-o", sheet.to_str().unwrap()]);
+    assert_eq!(one.status.code(), Some(2), "a spreadsheet holds every table");
+
     looks_right(&at("report.html"));
 }
 

@@ -55,8 +55,11 @@ fn three_participants_from_the_welcome_to_the_t_test() {
             assert_eq!(row["completion_code"], participant["code"]);
             assert_eq!(row["trial_index"], index);
             assert_eq!(row["choice"], trial["choice"]);
-            assert_eq!(row["left_sha256"], trial["left"], "what was on the left is what the row says");
-            assert_eq!(row["right_sha256"], trial["right"]);
+            for side in ["left", "right"] {
+                let pixels = pixels_of(data.path(), row[format!("{side}_sha256")].as_str().unwrap());
+                let seen = trial[side].as_str().unwrap().to_owned();
+                assert!(pixels.contains(&seen), "what was on the {side} is what row {index} says");
+            }
             assert_ne!(row["left_sha256"], row["right_sha256"]);
             let side = if trial["choice"] == "left" { "left_condition" } else { "right_condition" };
             assert_eq!(row["chosen_condition"], row[side]);
@@ -247,4 +250,19 @@ fn no_code_before_every_trial_is_stored_and_no_answer_changes() {
         .output()
         .unwrap();
     assert!(!out.status.success() && String::from_utf8_lossy(&out.stderr).contains("append-only"), "{out:?}");
+}
+
+/// Hashes of the pixels that a stored stimulus may have on the screen: a still's, or those of an animation's frames.
+fn pixels_of(data: &std::path::Path, sha256: &str) -> Vec<String> {
+    let bytes = std::fs::read(data.join("stimuli").join(&sha256[..2]).join(sha256)).unwrap();
+    let manifest: Option<Value> = serde_json::from_slice(&bytes).ok();
+    let names = match &manifest {
+        Some(manifest) => {
+            manifest["frames"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect()
+        }
+        None => vec![sha256],
+    };
+    let rows = sql(&database(data), "SELECT sha256, pixels_sha256 FROM stimuli");
+    let named = rows.iter().filter(|row| names.contains(&row["sha256"].as_str().unwrap()));
+    named.map(|row| row["pixels_sha256"].as_str().unwrap().to_owned()).collect()
 }

@@ -100,3 +100,20 @@ fn a_pilot_is_stored_as_one_and_its_link_is_not_kept() {
     let rows = sql(&data.path().join("kelir.sqlite"), "SELECT kind, params FROM sessions");
     assert_eq!(rows, [json!({ "kind": "pilot", "params": "{}" })]);
 }
+
+#[test]
+fn a_preview_in_a_browser_says_that_it_is_one_and_leaves_nothing_behind() {
+    let data = small_data();
+    let server = Server::start_small(data.path());
+    let before = stored(data.path());
+    let path =
+        link(data.path(), "preview").split_once("/study/").map(|(_, rest)| format!("/study/{rest}")).unwrap();
+    let seen = kelir_tests::browser("preview.mjs", &json!({ "url": format!("{}{path}", server.base) }));
+    assert!(seen["ribbon"].as_str().unwrap().contains("nothing is stored"), "{seen}");
+    assert_eq!(
+        (&seen["code"], &seen["kept"], &seen["complaints"]),
+        (&json!("PREVIEW"), &json!([]), &json!([])),
+        "{seen}"
+    );
+    assert_eq!(stored(data.path()), before);
+}

@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 29bdfcbdb8ce58225a8d791555108df2606195c108a23ef5cdd28775ab1f4b20 a0e1569b9f6ae81577c8c8f2f9b8da7aae93a9aac3e54b7ee3fe44b0d9664edc
+// Generated from openapi.json by `npm run types`; do not edit. 99647e9698138510de30362cb858c7136ee1c42caa2e4e6b25ac88f79a14c0a8 9bd5b5cf8e19dc052b62c906ff9666e7d86403bdc4c862a983d2a4ddcc0f30a2
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -1373,7 +1373,7 @@ export interface components {
         Model: "thurstone" | "bradley-terry";
         /** @description What is known of someone who begins. */
         NewSession: {
-            /** @description What the browser says about its display; kept as it comes. */
+            /** @description What the browser says about its display; kept as it comes. `language` is the one in which the study is read. */
             display?: {
                 [key: string]: unknown;
             } | null;
@@ -1855,14 +1855,16 @@ export interface components {
         SessionState: {
             /** @description The code at the end, once completed. */
             completion_code?: string;
-            /** Whether the link named the participant: who comes by it again is the same person. */
-            named: boolean;
             /** @description Whether consent has been given. */
             consented: boolean;
+            /** @description The language in which it is taken: the `language` of the display that it began with where the study has it, else the study's own. */
+            language: string;
             /** @description Whether more trials will be decided, from the answers to these. */
             more: boolean;
             /** @description Most trials there can be. */
             most_trials: number;
+            /** @description Whether the link named the participant: who comes by it again is the same person. */
+            named: boolean;
             /**
              * Format: int32
              * @description The first decided trial without an answer; null when there is none.
@@ -2029,6 +2031,8 @@ export interface components {
             estimated_minutes: number;
             /** @description Its id, as in addresses. */
             id: string;
+            /** @description The language of title, question and texts (BCP 47). */
+            language: string;
             /** @description Whether each visit is somebody else's, as on a laboratory's computer. */
             per_visit: boolean;
             /** @description The question over every trial. */
@@ -2046,6 +2050,10 @@ export interface components {
             texts: components["schemas"]["Texts"];
             /** @description Title. */
             title: string;
+            /** @description The same in other languages, by tag. */
+            translations: {
+                [key: string]: components["schemas"]["Translation"];
+            };
             /** @description Kinds of trial, in the order of first use. */
             trial_kinds: components["schemas"]["TrialName"][];
         };
@@ -2076,6 +2084,8 @@ export interface components {
              * @description A session without a sign of life for this long gives its slot to someone else, in minutes.
              */
             idle_minutes: number;
+            /** @description The language of its texts, as a BCP 47 tag. */
+            language?: string;
             /** @description The question over every pair. */
             question: string;
             /** @description When an input counts as a response, as far as the file says so. */
@@ -2100,6 +2110,10 @@ export interface components {
             texts: components["schemas"]["Texts"];
             /** @description Title for participants and researchers. */
             title: string;
+            /** @description What participants read in other languages, by tag. */
+            translations?: {
+                [key: string]: components["schemas"]["Translation"];
+            };
         };
         /** @description One page of the studies. */
         StudyList: {
@@ -2404,6 +2418,15 @@ export interface components {
                  */
                 target: number;
             };
+        };
+        /** @description What participants read of a study, in another language than its own. */
+        Translation: {
+            /** @description The question over every trial. */
+            question: string;
+            /** @description What participants read. */
+            texts: components["schemas"]["Texts"];
+            /** @description Title. */
+            title: string;
         };
         /** @description Circular triads (a over b, b over c, c over a), summed over observers. */
         Triads: {

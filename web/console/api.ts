@@ -24,6 +24,8 @@ const v1 = "/api/v1";
 export const login = (password: string) => request<void>(`${v1}/auth/session`, { method: "POST", body: { password } satisfies Schemas["SignIn"] });
 export const logout = () => request<void>(`${v1}/auth/session`, { method: "DELETE" });
 export const fetchPaper = () => request<Paper>(`${v1}/papers/taylor-cameron`);
+/** What is damaged of all that the server stores. */
+export const fetchIntegrity = () => request<Schemas["IntegrityReport"]>(`${v1}/integrity`);
 export const fetchStudies = () => all<StudySummary>(`${v1}/studies`);
 export const fetchVersions = (study: string) => all<StudyVersion>(`${v1}/studies/${encodeURIComponent(study)}/versions`);
 

@@ -1,7 +1,7 @@
 /** The researcher's page: sign in, a list of studies, one study. Addresses are real: back, reload and links work. */
 import { h } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
-import { fetchStudies, login, logout, type StudySummary } from "./api.ts";
+import { fetchIntegrity, fetchStudies, login, logout, type StudySummary } from "./api.ts";
 import { copyOnClick, number } from "./copy.ts";
 import { statusText } from "./status.ts";
 import { showStudy, UnknownVersion } from "./study.ts";
@@ -12,6 +12,7 @@ const header = h("header", {}, h("a", { class: "brand", href: "/console/studies"
 document.body.append(header, main);
 
 const signOut = h("button", { type: "button", class: "link", onclick: () => void leave() }, "Sign out");
+const warning = h("aside", { class: "problem", role: "status", "aria-label": "Integrity" });
 let shown = new AbortController();
 
 /** Shows what the address says. */
@@ -27,6 +28,7 @@ async function show(): Promise<void> {
     else if (path === "/console/login") return go("/console", true);
     else message("There is no such page", "The studies are one step back.", link("/console/studies", "All studies"));
     if (!signedIn()) header.append(signOut);
+    void warn().catch(() => undefined);
   } catch (error) {
     if (signal.aborted) return;
     if (error instanceof Refused && (error.status === 401 || error.status === 403)) return showLogin();
@@ -40,6 +42,14 @@ async function show(): Promise<void> {
     message("The server doesn't answer as it should", error instanceof Error ? error.message : String(error), again);
   }
   main.querySelector<HTMLElement>("h1")?.focus({ preventScroll: true });
+}
+
+/** What the server found damaged, above every page. */
+async function warn(): Promise<void> {
+  const { faults } = await fetchIntegrity();
+  warning.replaceChildren(...faults.map((fault) => h("p", {}, fault)));
+  if (faults.length > 0) main.before(warning);
+  else warning.remove();
 }
 
 const signedIn = () => header.contains(signOut);
@@ -90,7 +100,6 @@ function showLogin(): void {
 function explain(error: unknown): string {
   if (!(error instanceof Refused)) return "The server doesn't answer. Is it running?";
   if (error.status === 401 || error.status === 403) return "That is not the password. Please try again.";
-  if (error.status === 429) return "Too many tries. Please wait a minute.";
   return error.message;
 }
 
@@ -109,7 +118,7 @@ async function showStudies(forward: boolean): Promise<void> {
   document.title = "Studies · kelir";
   const row = (study: StudySummary) => {
     const { completed, in_progress, started } = study.participants;
-    return h("tr", {}, h("th", { scope: "row" }, link(address(study), study.title), ...[statusText(study)].map((text) => text !== null && h("span", { class: "note" }, text))), ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))));
+    return h("tr", {}, h("th", { scope: "row" }, link(address(study), study.title), h("span", { class: "note" }, study.id), ...[statusText(study)].map((text) => text !== null && h("span", { class: "note" }, text))), ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))));
   };
   const table = h(
     "table",

@@ -67,7 +67,7 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
 
   const draw = ({ summary, versions, selection, results }: Seen) => {
     const title = results?.title ?? summary?.title ?? id;
-    document.title = `${title} · kelir`;
+    document.title = `${title} (${id}) · kelir`;
     const status = summary === undefined ? null : statusText(summary);
     section("head", [title, results?.version, results?.other_versions], () => head(id, title, results));
     section("status", [status, results?.pooled, results?.different_stimuli], () => [...(status === null ? [] : [h("p", { class: "banner", role: "status" }, status)]), ...(results === null ? [] : pooledBanner(results, versions))]);
@@ -76,7 +76,7 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
       return versions.length < 2 ? [] : [h("h2", {}, "Versions"), list.element];
     });
     list?.recount(versions);
-    section("participants", [results?.participants, results?.standing, results?.excluded], () => participants(results, id));
+    section("participants", [results?.participants, results?.standing, results?.excluded], () => participants(results));
     if (results !== null) {
       const { blocks, scale, standing, stimuli, different_stimuli } = results;
       section("choices", [blocks, scale, standing.summary], () => choices(results));
@@ -170,7 +170,7 @@ function rehearsal(study: string): HTMLElement {
   return h("p", { class: "quiet" }, "Try it: ", preview, " (nothing is stored), or make a ", link("pilot", "Pilot link"), " (stored, left out of every analysis) or a ", link("preview", "Preview link"), " for somebody who does not sign in. ", made);
 }
 
-function participants(results: Results | null, id: string): Node[] {
+function participants(results: Results | null): Node[] {
   const { started, in_progress, completed } = results?.participants ?? { started: 0, in_progress: 0, completed: 0 };
   const figure = (n: number, label: string, testid: string) => h("div", { class: "figure" }, h("strong", { "data-testid": testid }, number(n.toLocaleString("en"), n)), h("span", {}, label));
   const heading = h("h2", {}, "Participants");

@@ -32,8 +32,8 @@ function frameTimes(): Promise<number[]> {
   });
 }
 
-/** Sent once, when the session is made. */
-export function describeDisplay(): Record<string, unknown> {
+/** Sent once, when the session is made; with the language in which the study is read. */
+export function describeDisplay(language: string): Record<string, unknown> {
   return {
     resolution: [Math.round(screen.width * devicePixelRatio), Math.round(screen.height * devicePixelRatio)],
     viewport: [innerWidth, innerHeight],
@@ -43,7 +43,9 @@ export function describeDisplay(): Record<string, unknown> {
     high_dynamic_range: matchMedia("(dynamic-range: high)").matches,
     touch: matchMedia("(pointer: coarse)").matches,
     reduced_motion: matchMedia("(prefers-reduced-motion: reduce)").matches,
-    language: navigator.language,
+    forced_colors: matchMedia("(forced-colors: active)").matches,
+    language,
+    browser_languages: navigator.languages.slice(0, 16),
     user_agent: navigator.userAgent,
   };
 }

@@ -2,6 +2,7 @@
 import "./steady.ts";
 import { Refused } from "../shared/http.ts";
 import * as api from "./api.ts";
+import { choose, inLanguage, type Reading } from "./language.ts";
 import { inkOn, srgbCode } from "./layout.ts";
 import { notice, persist } from "./notice.ts";
 import { action, display, Ended, lastPage } from "./pages.ts";
@@ -19,9 +20,10 @@ document.body.append(display, notice);
 speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
-/** What the link says of the participant, within what the server takes; an id that is too long stays so, and is refused aloud. */
+const query = new URLSearchParams(location.search);
+/** What the link says of the participant, within what the server takes; an id that is too long stays so, and is refused aloud. `lang` is the page's own. */
 const params = Object.fromEntries(
-  [...new URLSearchParams(location.search)].filter(([name]) => [...name].length <= 64).map(([name, value]) => [name, [...value].slice(0, 1024).join("")]).slice(0, 64),
+  [...query].filter(([name]) => name !== "lang" && [...name].length <= 64).map(([name, value]) => [name, [...value].slice(0, 1024).join("")]).slice(0, 64),
 );
 
 async function start(): Promise<void> {
@@ -41,7 +43,7 @@ async function start(): Promise<void> {
     if (!(error instanceof Refused) || error.status !== 404) throw error;
     return lastPage(words("no-study-title"), [words("no-study")]);
   }
-  dress(study);
+  let read = dressed(study, choose(study, query.get("lang"), navigator.languages));
   showRibbon(visit);
   const store = openStore(() => (kept ? localStorage : memoryOnly()));
   session = new Session(study.id, key, params, store);
@@ -53,9 +55,17 @@ async function start(): Promise<void> {
   // A page that is brought back as it was may be of long ago: the server's word counts.
   addEventListener("pageshow", ({ persisted }) => persisted && store.durable && location.reload());
   // A session keeps the texts and the question that it began with.
-  dress(session.state?.study ?? study);
+  if (session.state !== null) read = dressed(session.state.study, session.state.language);
   session.rescue();
-  await new Visit(study, session, tab).run();
+  await new Visit(read, session, tab).run();
+}
+
+/** The study as it reads in a language; the page speaks that, too. */
+function dressed(study: api.Study, language: string): Reading {
+  const read = inLanguage(study, language);
+  speak(language);
+  dress(read);
+  return read;
 }
 
 /** In place of a storage: a preview leaves nothing behind. */

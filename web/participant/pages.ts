@@ -2,10 +2,12 @@
 import { h, paragraphs } from "../shared/dom.ts";
 import type { Completion, Study } from "./api.ts";
 import { copied } from "./copy.ts";
+import { languages, type Reading } from "./language.ts";
 import { legendsContent } from "./legend.ts";
+import { linkedParagraphs } from "./links.ts";
 import { showPage } from "./text-page.ts";
 import type { TrialModule } from "./trials/module.ts";
-import { words } from "./words/index.ts";
+import { direction, words } from "./words/index.ts";
 
 /** Where everything but `notice` is shown. */
 export const display = h("main", { id: "study" });
@@ -35,35 +37,52 @@ export function action(label: string, onclick: () => void): HTMLButtonElement {
   return h("button", { type: "button", class: "action", onclick: () => onclick() }, label);
 }
 
-export function consentContent({ texts, estimated_minutes }: Study): Node[] {
+/** What taking part means; where the language may still be chosen, in which. */
+export function consentContent(study: Reading, choosing: boolean): Node[] {
+  const { texts, estimated_minutes } = study;
   const print_ = h("button", { type: "button", class: "link", onclick: () => print() }, words("consent-print"));
   return [
-    ...paragraphs(texts.welcome),
+    ...(choosing ? languageSwitch(study) : []),
+    ...linkedParagraphs(texts.welcome),
     h("p", { "data-testid": "minutes" }, words("consent-minutes", { minutes: estimated_minutes })),
     h("h2", {}, words("consent-title")),
-    ...paragraphs(texts.consent),
+    ...linkedParagraphs(texts.consent),
     h("p", { class: "quiet" }, words("consent-decline"), " ", print_),
   ];
 }
 
+/** The study's languages, as links to itself; none where there is one. */
+function languageSwitch(study: Reading): Node[] {
+  const all = languages(study);
+  if (all.length < 2) return [];
+  const link = (language: string) => {
+    const query = new URLSearchParams(location.search);
+    query.set("lang", language);
+    const name = new Intl.DisplayNames([language], { type: "language" }).of(language) ?? language;
+    const current = study.reading === language ? "true" : null;
+    return h("a", { class: "link", href: `?${query}`, lang: language, hreflang: language, dir: direction(language), "aria-current": current }, name);
+  };
+  return [h("nav", { class: "languages", "aria-label": words("language-switch") }, ...all.map(link))];
+}
+
 /** The study's instructions, and how to answer each of its kinds of trial. */
 export function instructionsContent(study: Study, legends: readonly TrialModule["legend"][]): Node[] {
-  return [...paragraphs(study.texts.instructions), legendsContent(study, legends)];
+  return [...linkedParagraphs(study.texts.instructions), legendsContent(study, legends)];
 }
 
 /** The last page of a visit that came to its end. */
 export function showThanks(screen: HTMLElement, { texts }: Study, { completion_code, redirect }: Completion): void {
-  const code = h("output", { class: "code", translate: "no", "data-testid": "completion-code", "aria-label": words("code-label") }, completion_code);
+  const code = h("output", { class: "code", translate: "no", dir: "ltr", "data-testid": "completion-code", "aria-label": words("code-label") }, completion_code);
   const target = safeRedirect(redirect);
   const action =
     target !== null
       ? h("a", { class: "action", href: target.href, rel: "noreferrer" }, words("return-to", { host: target.hostname.replace(/^(app|www)\./, "") }))
       : copyButton(completion_code);
   const content = [
-    ...paragraphs(texts.thanks),
+    ...linkedParagraphs(texts.thanks),
     h("div", { class: "receipt" }, h("p", { class: "quiet" }, words("code-stored")), code),
     h("h2", {}, words("about-title")),
-    ...paragraphs(texts.debriefing),
+    ...linkedParagraphs(texts.debriefing),
   ];
   showPage(screen, words("thanks-title"), content, action);
 }

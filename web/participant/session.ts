@@ -25,7 +25,7 @@ function remembered(kept: Partial<Remembered> | null): Remembered | null {
 function noSession(error: unknown): unknown {
   const code = error instanceof Refused ? error.code : "";
   if (code === "already_finished") return new Ended(words("finished-title"), [words("finished")], error);
-  if (code === "already_begun") return new Ended(words("begun-title"), [words("begun")], error);
+  if (code === "already_begun") return new Ended(words("begun-elsewhere-title"), [words("begun-elsewhere")], error);
   if (code === "invalid_field") return new Ended(words("link-title"), [words("link")], error);
   return error;
 }
@@ -120,9 +120,9 @@ export class Session {
   }
 
   /** Nothing is stored of anybody before this. */
-  async consent(): Promise<void> {
+  async consent(language: string): Promise<void> {
     if (this.#who === null) {
-      const { token, ...state } = await this.#create();
+      const { token, ...state } = await this.#create(language);
       this.#remember({ session_id: state.session_id, token, reloads: 0 });
       this.#store.remove(this.#startKey);
       this.#outbox = this.#openOutbox();
@@ -131,12 +131,12 @@ export class Session {
     this.state = await persist(() => api.giveConsent(who));
   }
 
-  /** Begins a session. Its key stays until the reply is here, so that a lost reply makes no second session. */
-  async #create(): Promise<api.Schemas["CreatedSession"]> {
+  /** Begins a session. Its key stays until the reply is here, so that a lost reply makes no second session; in another language it is another one. */
+  async #create(language: string): Promise<api.Schemas["CreatedSession"]> {
     const key = this.#store.read<string>(this.#startKey) ?? randomKey();
     this.#store.write(this.#startKey, key);
     try {
-      return await persist(() => api.createSession(this.#studyId, { params: this.#params, display: describeDisplay() }, key));
+      return await persist(() => api.createSession(this.#studyId, { params: this.#params, display: describeDisplay(language) }, `${key}-${language}`));
     } catch (error) {
       // A final no: the next try is another one.
       this.#store.remove(this.#startKey);

@@ -1,30 +1,28 @@
-/** Stimuli, fetched, checked against their hash and decoded before anybody sees them. */
-import { backoffMs, pause } from "../shared/backoff.ts";
+/** Stimuli, fetched in the order in which they are needed, checked against their hash and decoded before anybody sees them. */
 import type { StimulusRef, Trial } from "./api.ts";
-import { hash } from "./sha256.ts";
-import { words } from "./words/index.ts";
+import { download } from "./download.ts";
+import { animation, type Head, still } from "./packed.ts";
 
-/** The manifest of an animation stimulus (`application/vnd.kelir.animation+json`). */
-export interface Manifest {
-  fps: number;
-  loop: boolean;
-  width: number;
-  height: number;
-  /** One hash a frame; equal frames share theirs. */
-  frames: string[];
-}
+export { Unusable } from "./packed.ts";
 
 export type Picture =
   | { kind: "still"; image: HTMLImageElement }
-  | { kind: "animation"; manifest: Manifest; frames: ImageBitmap[] };
+  | { kind: "animation"; manifest: Pick<Head, "fps" | "loop">; frames: ImageBitmap[] };
 
 /** A trial's pictures by role. */
 export type Pictures = Record<string, Picture>;
 
-/** A stimulus that can't be had: the server hasn't got it, or its bytes are not what the plan says. */
-export class Unusable extends Error {}
+/** How far the pictures that are known of are. */
+export interface Progress {
+  here: number;
+  of: number;
+  /** Bytes that have come. */
+  bytes: number;
+}
 
 export interface Loader {
+  /** Gets the stimuli of these trials, the first ones first, while other things are on the screen. */
+  ahead(trials: readonly Trial[]): void;
   /** Gets a trial's stimuli while something else is on the screen; decodes them too, unless that could disturb an animation. */
   preload(trial: Trial, decode: boolean): void;
   /** All its stimuli, ready to be painted. Rejects with `Unusable` when trying again would not help. */
@@ -33,72 +31,130 @@ export interface Loader {
   release(trial: Trial): void;
 }
 
-/** `onWaiting` hears `true` when the line keeps us waiting, and `false` when it is back. */
-export function openLoader(onWaiting: (waiting: boolean) => void): Loader {
-  const cache = new Map<string, Promise<Blob>>();
+/** Requests under way at once: a trial's two. More would make its pictures wait for those of later trials. */
+const AT_ONCE = 2;
+/** Bytes held for later trials; beyond them nothing is fetched ahead. */
+const MOST_AHEAD = 64e6;
+
+type Bytes = Uint8Array<ArrayBuffer>;
+interface Wanted {
+  ref: StimulusRef;
+  /** The first trial that shows it. */
+  trial: number;
+  state: "waiting" | "coming" | "here";
+  bytes: Promise<Bytes>;
+  begin(): void;
+}
+
+/** `onWaiting` hears `true` when the line keeps us waiting, and `false` when it is back; `onProgress` hears of everything that comes. */
+export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (progress: Progress) => void = () => {}): Loader {
+  const wanted = new Map<string, Wanted>();
   const ready = new Map<number, Promise<Pictures>>();
-  const slots = limit(6);
+  /** Trials whose pictures are waited for: these are fetched whatever is held already. */
+  const urgent = new Set<number>();
+  const progress: Progress = { here: 0, of: 0, bytes: 0 };
+  let held = 0;
+  let running = 0;
 
-  const bytes = (ref: StimulusRef): Promise<Blob> => {
-    let blob = cache.get(ref.sha256);
-    if (blob === undefined) {
-      blob = slots(() => fetchVerified(ref, onWaiting));
-      cache.set(ref.sha256, blob);
-      blob.catch(() => cache.delete(ref.sha256));
+  const onBytes = (more: number) => {
+    progress.bytes += more;
+    onProgress({ ...progress });
+  };
+
+  /** Begins what is wanted first, as far as there is room. */
+  const pump = () => {
+    const waiting = [...wanted.values()].filter(({ state }) => state === "waiting").sort((a, b) => a.trial - b.trial);
+    for (const next of waiting) {
+      if (running >= AT_ONCE || (held > MOST_AHEAD && !urgent.has(next.trial))) return;
+      next.begin();
     }
-    return blob;
   };
 
-  const manifest = async (ref: StimulusRef): Promise<Manifest> => checked(JSON.parse(await (await bytes(ref)).text()));
-  const frame = (sha256: string) => bytes({ sha256, url: `/stimuli/${sha256}` });
-
-  const still = async (ref: StimulusRef): Promise<Picture> => {
-    const image = new Image();
-    image.alt = "";
-    image.draggable = false;
-    image.src = URL.createObjectURL(await bytes(ref));
-    await image.decode();
-    return { kind: "still", image };
-  };
-
-  const animation = async (ref: StimulusRef): Promise<Picture> => {
-    const description = await manifest(ref);
-    const distinct = new Map<string, Promise<ImageBitmap>>();
-    for (const sha256 of new Set(description.frames)) {
-      distinct.set(sha256, frame(sha256).then((blob) => createImageBitmap(blob)));
+  const want = (ref: StimulusRef, trial: number): Wanted => {
+    const known = wanted.get(ref.sha256);
+    if (known !== undefined) {
+      if (known.state === "waiting") known.trial = Math.min(known.trial, trial);
+      return known;
     }
-    const frames = await Promise.all(description.frames.map((sha256) => distinct.get(sha256) as Promise<ImageBitmap>));
-    return { kind: "animation", manifest: description, frames };
+    let begin: Wanted["begin"] = () => {};
+    const bytes = new Promise<Bytes>((resolve, reject) => {
+      begin = () => {
+        running += 1;
+        entry.state = "coming";
+        download(ref, { onWaiting, onBytes })
+          .then((bytes) => {
+            entry.state = "here";
+            held += bytes.length;
+            progress.here += 1;
+            onBytes(0);
+            resolve(bytes);
+          })
+          .catch((error: unknown) => {
+            wanted.delete(ref.sha256);
+            progress.of -= 1;
+            reject(error);
+          })
+          .finally(() => {
+            running -= 1;
+            pump();
+          });
+      };
+    });
+    bytes.catch(() => undefined); // `load` meets the same error again where it can be said
+    const entry: Wanted = { ref, trial, state: "waiting", bytes, begin };
+    wanted.set(ref.sha256, entry);
+    progress.of += 1;
+    return entry;
   };
 
-  const make = async (trial: Trial): Promise<Pictures> => {
-    const picture = trial.kind === "still" ? still : animation;
-    const all = Object.entries(trial.shown).map(async ([role, ref]) => [role, await picture(ref)] as const);
-    return Object.fromEntries(await Promise.all(all));
+  const fetching = (trial: Trial) => Object.values(trial.shown).map((ref) => want(ref, trial.trial_index));
+
+  const picture = async (trial: Trial, ref: StimulusRef): Promise<Picture> => {
+    const bytes = await want(ref, trial.trial_index).bytes;
+    if (trial.kind === "still") return { kind: "still", image: await still(bytes) };
+    const { head, frames } = await animation(bytes);
+    return { kind: "animation", manifest: head, frames };
   };
 
   const load = (trial: Trial): Promise<Pictures> => {
-    let pictures = ready.get(trial.trial_index);
-    if (pictures === undefined) {
-      pictures = make(trial);
-      ready.set(trial.trial_index, pictures);
-      pictures.catch(() => ready.delete(trial.trial_index)); // `load` meets the same error again where it can be said
-    }
+    const known = ready.get(trial.trial_index);
+    if (known !== undefined) return known;
+    const all = Object.entries(trial.shown).map(async ([role, ref]) => [role, await picture(trial, ref)] as const);
+    const pictures = Promise.all(all).then((made) => Object.fromEntries(made));
+    ready.set(trial.trial_index, pictures);
+    pictures.catch(() => ready.delete(trial.trial_index)); // the next `load` tries again
+    pump();
     return pictures;
   };
 
   return {
+    ahead(trials) {
+      trials.forEach(fetching);
+      pump();
+    },
     preload(trial, decode) {
       if (decode) return void load(trial);
-      for (const ref of Object.values(trial.shown)) {
-        const fetched = trial.kind === "still" ? bytes(ref) : manifest(ref).then((m) => Promise.all(m.frames.map(frame)));
-        fetched.catch(() => undefined);
-      }
+      fetching(trial);
+      pump();
     },
-    load,
+    load(trial) {
+      urgent.add(trial.trial_index);
+      return load(trial);
+    },
     release(trial) {
       const made = ready.get(trial.trial_index);
       ready.delete(trial.trial_index);
+      urgent.delete(trial.trial_index);
+      for (const ref of Object.values(trial.shown)) {
+        const entry = wanted.get(ref.sha256);
+        // A later trial that shows it too gets it out of the browser's cache.
+        if (entry?.state !== "here" || held <= MOST_AHEAD / 2) continue;
+        wanted.delete(ref.sha256);
+        void entry.bytes.then((bytes) => {
+          held -= bytes.length;
+          pump();
+        });
+      }
       void made?.then((pictures) => {
         for (const picture of Object.values(pictures)) {
           if (picture.kind === "still") URL.revokeObjectURL(picture.image.src);
@@ -106,60 +162,5 @@ export function openLoader(onWaiting: (waiting: boolean) => void): Loader {
         }
       });
     },
-  };
-}
-
-/** Fetches until the line lets it through; bytes that don't hash right are asked for twice more, past every cache. */
-async function fetchVerified(ref: StimulusRef, onWaiting: (waiting: boolean) => void): Promise<Blob> {
-  let failures = 0;
-  let wrong = 0;
-  for (;;) {
-    let response: Response | null = null;
-    try {
-      response = await fetch(ref.url, { cache: wrong > 0 ? "reload" : "default" });
-      if (response.ok) {
-        const type = response.headers.get("content-type") ?? "";
-        const body = await response.arrayBuffer();
-        if ((await hash(new Uint8Array(body))) === ref.sha256) {
-          if (failures > 0) onWaiting(false);
-          return new Blob([body], { type });
-        }
-        wrong += 1;
-        if (wrong > 2) throw new Unusable(words("picture-damaged"));
-        continue;
-      }
-    } catch (error) {
-      if (error instanceof Unusable) throw error;
-    }
-    if (response !== null && response.status >= 400 && response.status < 500 && response.status !== 408 && response.status !== 429) {
-      throw new Unusable(words("picture-refused", { status: response.status }));
-    }
-    failures += 1;
-    if (failures > 1) onWaiting(true);
-    await pause(backoffMs(failures));
-  }
-}
-
-function checked(manifest: Partial<Manifest>): Manifest {
-  const { fps, frames } = manifest;
-  if (typeof fps !== "number" || !(fps > 0) || !Array.isArray(frames) || frames.length === 0) {
-    throw new Unusable(words("picture-damaged"));
-  }
-  return { loop: true, width: 0, height: 0, ...manifest, fps, frames };
-}
-
-/** Runs at most `n` at once. */
-function limit(n: number): <T>(job: () => Promise<T>) => Promise<T> {
-  let running = 0;
-  const queue: Array<() => void> = [];
-  return async (job) => {
-    if (running >= n) await new Promise<void>((resolve) => queue.push(resolve));
-    running += 1;
-    try {
-      return await job();
-    } finally {
-      running -= 1;
-      queue.shift()?.();
-    }
   };
 }

@@ -2,13 +2,14 @@
 import { initJsPsych, type JsPsych } from "jspsych";
 import { h, paragraphs } from "../shared/dom.ts";
 import { Refused } from "../shared/http.ts";
-import type { Study, Trial } from "./api.ts";
+import type { Trial } from "./api.ts";
 import { measureRefresh } from "./display.ts";
+import { inLanguage, type Reading } from "./language.ts";
 import { say } from "./notice.ts";
 import { askAgain, consentContent, display, Ended, instructionsContent, showThanks } from "./pages.ts";
 import { position } from "./plan.ts";
 import type { Session } from "./session.ts";
-import { openLoader, type Pictures, Unusable } from "./stimuli.ts";
+import { openLoader, type Pictures, type Progress, Unusable } from "./stimuli.ts";
 import TextPage, { showPage } from "./text-page.ts";
 import { loadKind, UnknownKind } from "./trials/kinds.ts";
 import { rulesOf, type TrialModule } from "./trials/module.ts";
@@ -23,25 +24,29 @@ type Node = Record<string, unknown> & { on_finish: () => Promise<void> };
 const PATIENCE_MS = 400;
 
 export class Visit {
-  readonly #found: Study;
+  readonly #found: Reading;
   readonly #session: Session;
   readonly #tab: Tab;
   readonly #jsPsych = initJsPsych({ display_element: display });
-  readonly #loader = openLoader((waiting) =>
-    say("pictures", waiting ? words("pictures-slow") : null),
+  readonly #loader = openLoader(
+    (slow) => this.#tell({ slow }),
+    (progress) => this.#tell({ progress }),
   );
+  /** What is known of the pictures on their way. */
+  #coming: Coming = { slow: false, awaited: false, progress: { here: 0, of: 0, bytes: 0 } };
   #refresh: Promise<number | null> | null = null;
   #instructed = false;
 
-  constructor(study: Study, session: Session, tab: Tab) {
+  constructor(study: Reading, session: Session, tab: Tab) {
     this.#found = study;
     this.#session = session;
     this.#tab = tab;
   }
 
-  /** The study as it was when the session began; before that, as it is now. */
-  get #study(): Study {
-    return this.#session.state?.study ?? this.#found;
+  /** The study as it was when the session began, in its language; before that, as it is now. */
+  get #study(): Reading {
+    const { state } = this.#session;
+    return state === null ? this.#found : inLanguage(state.study, state.language);
   }
 
   async run(): Promise<void> {
@@ -65,6 +70,7 @@ export class Visit {
     if (!this.#instructed && !this.#session.begun) return this.#instructions(kinds, on_finish);
     this.#known();
     this.#session.takeAgain();
+    this.#loader.ahead(this.#session.remaining);
     const trial = this.#session.remaining[0] ?? (await this.#left());
     return trial === null ? null : this.#trial(trial, await this.#kindFor(trial), on_finish);
   }
@@ -73,13 +79,14 @@ export class Visit {
     return {
       type: TextPage,
       heading: this.#study.title,
-      content: () => consentContent(this.#study),
+      content: () => consentContent(this.#study, this.#session.state === null),
       button: words("consent-agree"),
       testid: "consent-agree",
       rules: rulesOf(this.#study),
       action: async () => {
-        await this.#session.consent();
+        await this.#session.consent(this.#study.reading);
         this.#tab.has(this.#session.id);
+        this.#loader.ahead(this.#session.remaining);
       },
       on_load: noTabStop,
       on_finish,
@@ -175,15 +182,23 @@ export class Visit {
     if (this.#session.gone) throw new Ended(words("gone-title"), [words("gone")]);
   }
 
-  /** A trial's pictures; says so when they are long in coming, for the screen is empty until then. */
+  /** A trial's pictures; says how far they are when they are long in coming, for the screen is empty until then. */
   async #load(trial: Trial): Promise<Pictures> {
-    const slow = setTimeout(() => say("pictures", words("pictures-coming")), 1000);
+    const slow = setTimeout(() => this.#tell({ awaited: true }), PATIENCE_MS);
     try {
       return await this.#loader.load(trial);
     } finally {
       clearTimeout(slow);
-      say("pictures", null);
+      this.#tell({ awaited: false });
     }
+  }
+
+  /** Says what there is to say of the pictures on their way: how far they are to who waits for them. */
+  #tell(news: Partial<Coming>): void {
+    Object.assign(this.#coming, news);
+    const { slow, awaited, progress } = this.#coming;
+    const { here, of, bytes } = progress;
+    say("pictures", slow ? words("pictures-slow") : awaited ? words("pictures-coming", { here, of, mb: bytes / 1e6 }) : null);
   }
 
   #measure(): Promise<number | null> {
@@ -206,6 +221,13 @@ export class Visit {
       location.reload();
     }
   }
+}
+
+/** Whether the line is slow and whether the pictures are waited for, and how far they are. */
+interface Coming {
+  slow: boolean;
+  awaited: boolean;
+  progress: Progress;
 }
 
 /** What a page says when it keeps somebody waiting. */

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { InputGuard, type Press, type Rules } from "../participant/inputs/guard.ts";
+import { Inputs } from "../participant/inputs/watch.ts";
 
 const EDITION_2: Rules = { min_visible_ms: 200, min_gap_ms: 500 };
 const EDITION_1: Rules = { min_visible_ms: 0, min_gap_ms: 0 };
@@ -88,4 +89,17 @@ test("without rules of its own a study takes answers as quickly as people give t
   assert.deepEqual(verdicts, Array(10).fill(null));
   const same = new InputGuard();
   assert.deepEqual(Array.from({ length: 5 }, (_, i) => tap(same, "key:ArrowLeft", 200 * i, EDITION_1)), Array(5).fill(null));
+});
+
+test("a click that no key and no pointer made, as a screen reader's, is an input like any other", () => {
+  const page = new Inputs();
+  const click = (event: Partial<PointerEvent>) => page.click({ isTrusted: true, detail: 0, timeStamp: performance.now(), ...event } as PointerEvent);
+  const judge = (event: Partial<PointerEvent>, rules = EDITION_1) => page.judge(click(event), rules, 1000);
+  assert.equal(judge({}), null);
+  assert.equal(judge({}), null, "and again");
+  assert.equal(judge({}, EDITION_2), "gap");
+  assert.equal(judge({ isTrusted: false }), "untrusted");
+  assert.equal(click({}).input, "keyboard");
+  assert.equal(click({ detail: 1, pointerType: "pen" }).input, "pen");
+  assert.equal(click({ detail: 1 }).input, "mouse");
 });

@@ -55,6 +55,8 @@ export interface Options {
   response?: Study["response"];
   /** Each visit is somebody else's. */
   perVisit?: boolean;
+  /** Texts in place of the study's, in every language. */
+  texts?: Partial<Study["texts"]>;
 }
 
 export const problem = (status: number, code: Schemas["ProblemCode"], detail: string, more: Partial<Schemas["Problem"]> = {}): Reply => {
@@ -62,12 +64,14 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, perVisit = false, spoil = "" }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, perVisit = false, spoil = "", texts = {} }: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
 
-  const found = (): Study => ({ ...study, response, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
+  const worded = <T extends Pick<Study, "texts">>(told: T): T => ({ ...told, texts: { ...told.texts, ...texts } });
+  const translations = Object.fromEntries(Object.entries(study.translations).map(([language, told]) => [language, worded(told)]));
+  const found = (): Study => ({ ...worded(study), translations, response, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
     return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));
@@ -78,6 +82,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     session_id: s.id,
     study_id: study.id,
     study: found(),
+    language: Object.hasOwn(study.translations, String(s.body.display?.language)) ? String(s.body.display?.language) : study.language,
     status: s.code ? "completed" : s.consented ? "in_progress" : "consent",
     named: s.body.params?.["PROLIFIC_PID"] !== undefined,
     consented: s.consented,
@@ -176,7 +181,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     if (path.startsWith("/stimuli/")) {
       const stimulus = stuff.bytes.get(path.slice(9));
       if (stimulus === undefined) return json(problem(404, "not_found", "No such stimulus."));
-      return send(200, stimulus.type, stimulus.data, { "cache-control": "public, max-age=31536000, immutable" });
+      return send(200, "application/vnd.kelir.stimulus", stimulus.data, { "cache-control": "public, max-age=31536000, immutable" });
     }
     const page = path.startsWith("/study/") ? "participant.html" : path.startsWith("/console") ? "console.html" : null;
     try {

@@ -1,6 +1,6 @@
 // What the mock server serves: a study's words, its pictures and its plan.
 import type { Study, Trial } from "../participant/api.ts";
-import { type Look, shadow, sha256 } from "./samples.ts";
+import { type Look, png, sha256, shadowRows } from "./samples.ts";
 
 export const study: Omit<Study, "trial_kinds"> = {
   id: "shadow-puppets",
@@ -28,52 +28,93 @@ export const study: Omit<Study, "trial_kinds"> = {
     ],
     thanks: ["You have finished. Thank you for your time and your eyes."],
   },
+  language: "en",
+  translations: {
+    de: {
+      title: "Schatten auf einer Leinwand",
+      question: "Welches Bild ist eher echt?",
+      texts: {
+        welcome: ["In dieser Studie sehen Sie Paare von Bildern und wählen jeweils eines."],
+        consent: ["Die Teilnahme ist freiwillig. Fragen beantwortet studie@example.org, mehr steht auf https://example.org/schatten."],
+        instructions: ["Wählen Sie in jedem Paar ein Bild."],
+        debriefing: ["Alle Bilder waren berechnet."],
+        thanks: ["Das war das letzte Paar."],
+      },
+    },
+    ar: {
+      title: "ظلال على شاشة",
+      question: "أي الصورتين أقرب إلى أن تكون حقيقية؟",
+      texts: {
+        welcome: ["في هذه الدراسة ترى أزواجًا من الصور وتختار صورة من كل زوج."],
+        consent: ["المشاركة طوعية. للأسئلة: studie@example.org، والمزيد في https://example.org/shadows."],
+        instructions: ["اختر صورة من كل زوج."],
+        debriefing: ["كل الصور محسوبة بالحاسوب."],
+        thanks: ["كان هذا الزوج الأخير."],
+      },
+    },
+  },
 };
 
 /** A trial of the plan, before anybody answers. */
 export type Planned = Omit<Trial, "answered">;
 
 export interface Material {
-  /** By hash. */
-  bytes: Map<string, { type: string; data: Buffer }>;
+  /** By hash, with the pictures (PNG) that the bytes hold. */
+  bytes: Map<string, { data: Buffer; pictures: Buffer[] }>;
   trials: Planned[];
 }
 
+const [width, height] = [592, 333];
+
 /** Drawing takes longer than all else here, so each look is drawn once. */
-const drawn = new Map<string, Buffer>();
-function picture(look: Look): Buffer {
+const drawn = new Map<string, Uint8Array>();
+function rows(look: Look): Uint8Array {
   const key = JSON.stringify(look);
-  const png = drawn.get(key) ?? shadow(look);
-  drawn.set(key, png);
-  return png;
+  const rgb = drawn.get(key) ?? shadowRows({ width, height, ...look });
+  drawn.set(key, rgb);
+  return rgb;
 }
 
-class Maker implements Material {
-  readonly bytes = new Map<string, { type: string; data: Buffer }>();
+/** From one frame to the next: what is brighter above what is darker. */
+function step(before: Uint8Array, after: Uint8Array): Buffer {
+  const less = (a: Uint8Array, b: Uint8Array) => a.map((value, i) => Math.max(0, value - (b[i] ?? 0)));
+  return png(width, 2 * height, Buffer.concat([less(after, before), less(before, after)]));
+}
+
+export class Maker implements Material {
+  readonly bytes: Material["bytes"] = new Map();
   readonly trials: Planned[] = [];
 
   still(look: Look) {
-    return this.#add("image/png", picture(look));
+    return this.#add([png(width, height, rows(look))], 0, false);
   }
 
-  animation(look: Look, frames: number, fps: number) {
-    const list = Array.from({ length: frames }, (_, i) => this.still({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) }).sha256);
-    return this.#add("application/vnd.kelir.animation+json", Buffer.from(JSON.stringify({ fps, loop: true, width: 592, height: 333, frames: list })));
+  /** Frames of RGB rows, packed as the server does it. */
+  animation(frames: Uint8Array[], fps: number, loop = true) {
+    const [first = new Uint8Array(), ...others] = frames;
+    return this.#add([png(width, height, first), ...others.map((frame, i) => step(frames[i] as Uint8Array, frame))], fps, loop);
+  }
+
+  swinging(look: Look, frames: number, fps: number) {
+    return this.animation(Array.from({ length: frames }, (_, i) => rows({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) })), fps);
   }
 
   trial(trial: Omit<Planned, "trial_index" | "width" | "height">): void {
-    this.trials.push({ trial_index: this.trials.length, ...trial, width: 592, height: 333 });
+    this.trials.push({ trial_index: this.trials.length, ...trial, width, height });
   }
 
-  #add(type: string, data: Buffer) {
+  /** As the server packs stimuli, but for the pictures' type. */
+  #add(pictures: Buffer[], fps: number, loop: boolean) {
+    const head = { format: 2, width, height, fps, loop, frames: [...pictures.keys()], picture_type: "image/png", picture_bytes: pictures.map((png) => png.length) };
+    const data = Buffer.concat([Buffer.from(`${JSON.stringify(head)}\n`), ...pictures, Buffer.alloc(100)]);
     const hash = sha256(data);
-    this.bytes.set(hash, { type, data });
+    this.bytes.set(hash, { data, pictures });
     return { sha256: hash, url: `/stimuli/${hash}` };
   }
 }
 
 /** Two pairs of each of two blocks and one pair of animations, as small as the tests like them. */
-export function material({ frames = 12, fps = 12 } = {}): Material {
+export function material({ frames = 12, fps = 12 } = {}): Maker {
   const made = new Maker();
   const pair = (block_index: number, item_index: number, kind: Planned["kind"], left: ReturnType<Maker["still"]>, right: ReturnType<Maker["still"]>) =>
     made.trial({ trial: "two-alternative", block_index, item_index, kind, shown: { left, right }, settings: null });
@@ -81,7 +122,7 @@ export function material({ frames = 12, fps = 12 } = {}): Material {
   pair(0, 1, "still", made.still({ turn: -0.3, soft: 20, noise: 0.1 }), made.still({ turn: -0.3, soft: 20 }));
   pair(1, 0, "still", made.still({ turn: 0.5 }), made.still({ turn: 0.5, noise: 0.25 }));
   pair(1, 1, "still", made.still({ turn: 0.9, soft: 12 }), made.still({ turn: 0.9, soft: 12, noise: 0.25 }));
-  pair(2, 0, "animation", made.animation({ soft: 8 }, frames, fps), made.animation({ soft: 8, noise: 0.1 }, frames, fps));
+  pair(2, 0, "animation", made.swinging({ soft: 8 }, frames, fps), made.swinging({ soft: 8, noise: 0.1 }, frames, fps));
   return made;
 }
 
@@ -94,6 +135,6 @@ export function intervals({ stills = 2, animations = 0, settings = durations } =
   const trial = (kind: Planned["kind"], item_index: number, first: ReturnType<Maker["still"]>, second: ReturnType<Maker["still"]>) =>
     made.trial({ trial: "two-interval", block_index: 0, item_index, kind, shown: { first, second }, settings });
   for (let i = 0; i < stills; i++) trial("still", i, made.still({ turn: 0.1 * i }), made.still({ turn: 0.1 * i, noise: 0.1 }));
-  for (let i = 0; i < animations; i++) trial("animation", stills + i, made.animation({ soft: 8 }, 6, 12), made.animation({ soft: 8, noise: 0.1 }, 6, 12));
+  for (let i = 0; i < animations; i++) trial("animation", stills + i, made.swinging({ soft: 8 }, 6, 12), made.swinging({ soft: 8, noise: 0.1 }, 6, 12));
   return made;
 }

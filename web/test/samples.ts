@@ -32,7 +32,13 @@ export interface Look {
 }
 
 /** A leaf-shaped puppet with a row of holes, turned by `turn` radians, with edges `soft` pixels wide. */
-export function shadow({ width = 592, height = 333, turn = 0, soft = 6, noise = 0, seed = 1 }: Look = {}): Buffer {
+export function shadow(look: Look = {}): Buffer {
+  const { width = 592, height = 333 } = look;
+  return png(width, height, shadowRows(look));
+}
+
+/** Its rows, RGB. */
+export function shadowRows({ width = 592, height = 333, turn = 0, soft = 6, noise = 0, seed = 1 }: Look = {}): Uint8Array {
   const rgb = new Uint8Array(width * height * 3);
   let state = seed >>> 0 || 1;
   const random = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
@@ -51,7 +57,7 @@ export function shadow({ width = 592, height = 333, turn = 0, soft = 6, noise = 
       for (const [i, tint] of [238, 205, 150].entries()) rgb[(y * width + x) * 3 + i] = Math.min(255, Math.max(0, tint * light));
     }
   }
-  return png(width, height, rgb);
+  return rgb;
 }
 
 export const sha256 = (bytes: Uint8Array): string => createHash("sha256").update(bytes).digest("hex");

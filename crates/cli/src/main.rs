@@ -1,9 +1,11 @@
 //! The one binary of kelir. Exit codes: 0 done, 1 something failed, 2 the input is wrong and nothing was written.
 
 mod commands;
+mod log;
 mod output;
 mod progress;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -89,8 +91,38 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("kelir: {error:#}");
+            // A closed terminal is no reason for another exit code.
+            let _ = writeln!(std::io::stderr(), "kelir: {}", said(&error));
             if error.is::<BadInput>() { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
+    }
+}
+
+/// An error with its causes, each said once: many say their cause themselves.
+fn said(error: &anyhow::Error) -> String {
+    let mut said = String::new();
+    for cause in error.chain().map(ToString::to_string).filter(|cause| !cause.is_empty()) {
+        if said.is_empty() {
+            said = cause;
+        } else if !said.contains(&cause) {
+            said = format!("{said}: {cause}");
+        }
+    }
+    said
+}
+
+#[cfg(test)]
+mod tests {
+    use super::said;
+    use anyhow::{Context, anyhow};
+
+    #[test]
+    fn causes_are_said_once() {
+        let plain = anyhow!("no such file").context("reading x");
+        assert_eq!(said(&plain), "reading x: no such file");
+        let twice = anyhow!("no such file").context("reading x: no such file");
+        assert_eq!(said(&twice), "reading x: no such file");
+        let io: anyhow::Result<()> = Err(std::io::Error::other("in use")).context("cannot listen: in use");
+        assert_eq!(io.map_err(|error| said(&error)), Err("cannot listen: in use".to_owned()));
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
+use kelir_report::csv_cell;
 use serde::Serialize;
 
 /// How results are printed.
@@ -103,16 +104,12 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     lines.join("\n")
 }
 
-/// RFC 4180: quoted where needed.
+/// A header and rows as CSV.
 pub fn csv(header: &[&str], rows: &[Vec<String>]) -> String {
-    let quote = |cell: &str| {
-        let plain = !cell.contains([',', '"', '\n', '\r']);
-        if plain { cell.to_owned() } else { format!("\"{}\"", cell.replace('"', "\"\"")) }
-    };
     let head: Vec<String> = header.iter().map(|title| (*title).to_owned()).collect();
     let lines = std::iter::once(&head)
         .chain(rows)
-        .map(|row| row.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(","));
+        .map(|row| row.iter().map(|cell| csv_cell(cell)).collect::<Vec<_>>().join(","));
     lines.collect::<Vec<_>>().join("\n")
 }
 

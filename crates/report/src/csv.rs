@@ -30,22 +30,25 @@ pub fn csv(report: &StudyReport) -> String {
             number.note,
         ];
         out.push('\n');
-        out.push_str(&cells.map(|cell| quoted(&cell)).join(","));
+        out.push_str(&cells.map(|cell| csv_cell(&cell)).join(","));
     }
     out
 }
 
-/// A cell that a spreadsheet takes as text, not as a formula, quoted where needed.
-fn quoted(cell: &str) -> String {
-    let formula = cell.starts_with(['=', '+', '@', '\t', '\r'])
-        || cell.starts_with('-') && cell.parse::<f64>().is_err();
-    let cell = if formula { format!("'{cell}") } else { cell.to_owned() };
+/// What a spreadsheet takes for the beginning of a formula; those in full width (＝＋－＠) are read like the plain ones in East Asian settings.
+const FORMULAS: [char; 10] = ['=', '+', '-', '@', '\t', '\r', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
+
+/// A cell of any table that kelir writes: text that a spreadsheet would take for a formula gets an apostrophe before it; quoted where needed
+/// (RFC 4180).
+pub fn csv_cell(cell: &str) -> String {
+    let number = cell.parse::<f64>().is_ok() && cell.starts_with('-');
+    let cell = if cell.starts_with(FORMULAS) && !number { format!("'{cell}") } else { cell.to_owned() };
     if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::quoted;
+    use super::csv_cell as quoted;
 
     #[test]
     fn cells_are_quoted_and_no_formula_gets_through() {
@@ -53,5 +56,10 @@ mod tests {
         assert_eq!(quoted("=1+1"), "'=1+1");
         assert_eq!(quoted("-2+cmd"), "'-2+cmd");
         assert_eq!(quoted("-1.5e-3"), "-1.5e-3");
+        for formula in ["＝1+1", "＋1", "－1", "＠SUM(A1)", "+1", "@x", "\tx", "-cmd", "-"] {
+            assert_eq!(quoted(formula), format!("'{formula}"));
+        }
+        assert_eq!(quoted("\r=1"), "\"'\r=1\"");
+        assert_eq!(quoted("a＝b"), "a＝b");
     }
 }

@@ -17,7 +17,7 @@ mod sources;
 mod standing;
 mod text;
 
-pub use csv::csv;
+pub use csv::{csv, csv_cell};
 pub use document::{Cell, Column, Document, Figure, Piece, Row, Section, Table};
 pub use html::{escaped, html};
 pub use markdown::{Figures, Markdown, markdown};

@@ -5,7 +5,7 @@
 #[path = "../tests/it/placeholder.rs"]
 mod placeholder;
 
-use kelir_server::{Server, ServerConfig};
+use kelir_server::{Server, ServerConfig, TrustedProxies};
 use std::sync::Arc;
 
 #[tokio::main]
@@ -18,6 +18,7 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
         listen: ([127, 0, 0, 1], port).into(),
         password: Some("wayang kulit".to_owned()),
         secure_cookies: false,
+        trusted_proxies: TrustedProxies::default(),
         maker: Arc::new(placeholder::Placeholder::default()),
         progress: Arc::new(|_| {}),
     })

@@ -1,13 +1,18 @@
 //! What the handlers share.
 
 use crate::api::{Problem, ProblemCode};
+use crate::error::StudyFileError;
+use crate::integrity::Integrity;
 use crate::library::Library;
 use crate::limiter::Limiter;
 use crate::links::Links;
 use crate::making::{Maker, Making, StimulusMap};
+use crate::presenting::Presenter;
 use crate::previews::Previews;
+use crate::proxies::TrustedProxies;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
-use kelir_store::{Session, Store, StoreError, StoredAnswers};
+use crate::server::ServerConfig;
+use kelir_store::{Session, Store, StoreError, StoredAnswers, sha256_hex};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::Answers;
 use std::collections::{BTreeMap, HashMap};
@@ -20,7 +25,11 @@ pub(crate) struct App {
     pub(crate) library: Library,
     pub(crate) maker: Arc<dyn Maker>,
     pub(crate) studies: BTreeMap<String, LoadedStudy>,
+    /// Studies whose files are wrong, by id.
+    pub(crate) broken: BTreeMap<String, BrokenStudy>,
     pub(crate) limiter: Limiter,
+    pub(crate) integrity: Integrity,
+    pub(crate) presenter: Presenter,
     /// argon2 takes 19 MiB and a core for each password it judges.
     pub(crate) judging: Semaphore,
     /// A report resamples participants thousands of times.
@@ -28,6 +37,7 @@ pub(crate) struct App {
     pub(crate) secure_cookies: bool,
     pub(crate) links: Links,
     pub(crate) previews: Previews,
+    pub(crate) trusted_proxies: TrustedProxies,
     /// What sessions that began with other files or versions go on with, by study, file and version.
     begun: RwLock<HashMap<[String; 3], Begun>>,
     /// Answers as last read, by study and versions: what has come since is all that a result has to read.
@@ -43,6 +53,27 @@ pub(crate) struct Begun {
 
 /// Selections of versions whose answers are kept.
 const MOST_KEPT: usize = 32;
+
+/// A study whose file is wrong: it is not served, and the console says why.
+#[derive(Debug)]
+pub(crate) struct BrokenStudy {
+    pub(crate) id: String,
+    /// SHA-256 of the file as it is; empty where it cannot be read.
+    pub(crate) file_hash: String,
+    /// Everything that is wrong with it: field, value, rule.
+    pub(crate) reason: String,
+}
+
+impl BrokenStudy {
+    pub(crate) fn new(library: &Library, path: &str, error: &StudyFileError) -> BrokenStudy {
+        let name = path.rsplit('/').next().unwrap_or(path);
+        BrokenStudy {
+            id: name.strip_suffix(".toml").unwrap_or(name).to_owned(),
+            file_hash: library.read(path).map(|bytes| sha256_hex(&bytes)).unwrap_or_default(),
+            reason: error.to_string(),
+        }
+    }
+}
 
 /// A study that is being served.
 pub(crate) struct LoadedStudy {
@@ -70,9 +101,9 @@ impl App {
     pub(crate) fn new(
         store: Store,
         library: Library,
-        maker: Arc<dyn Maker>,
         studies: Vec<StudyDefinition>,
-        secure_cookies: bool,
+        broken: BTreeMap<String, BrokenStudy>,
+        config: &ServerConfig,
         links: Links,
     ) -> App {
         let loaded = |study: StudyDefinition| LoadedStudy {
@@ -83,12 +114,16 @@ impl App {
         App {
             store,
             library,
-            maker,
+            maker: config.maker.clone(),
+            broken,
             studies: studies.into_iter().map(|study| (study.id.clone(), loaded(study))).collect(),
             limiter: Limiter::default(),
+            integrity: Integrity::default(),
+            presenter: Presenter::default(),
             judging: Semaphore::new(2),
             reporting: Semaphore::new(1),
-            secure_cookies,
+            secure_cookies: config.secure_cookies,
+            trusted_proxies: config.trusted_proxies.clone(),
             links,
             previews: Previews::default(),
             begun: RwLock::default(),
@@ -97,7 +132,9 @@ impl App {
     }
 
     pub(crate) fn study(&self, id: &str) -> Result<&LoadedStudy, Box<Problem>> {
-        self.studies.get(id).ok_or_else(|| Problem::not_found("study"))
+        self.studies
+            .get(id)
+            .ok_or_else(|| if self.broken.contains_key(id) { closed() } else { Problem::not_found("study") })
     }
 
     /// The version of a study that is served now; `None` while its stimuli are not all made.
@@ -166,6 +203,12 @@ impl App {
     }
 }
 
+/// What participants are told of a study that cannot be taken; the console and the log say why.
+fn closed() -> Box<Problem> {
+    let detail = "This study can't be taken at the moment. The researchers see the reason in their console.";
+    Problem::new(ProblemCode::StimuliFailed, detail)
+}
+
 impl LoadedStudy {
     /// How long a session may be silent and still hold its place.
     pub(crate) fn idle(&self) -> Duration {
@@ -191,10 +234,7 @@ impl LoadedStudy {
                 );
                 Err(Problem::new(ProblemCode::NotReady, detail).retry_after(5))
             }
-            Stimuli::Failed(_) => {
-                let detail = "This study's images could not be made. The researchers have been told why.";
-                Err(Problem::new(ProblemCode::StimuliFailed, detail))
-            }
+            Stimuli::Failed(_) => Err(closed()),
         }
     }
 }

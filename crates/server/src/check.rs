@@ -87,7 +87,7 @@ pub(crate) fn problems_around(library: &Library, file: &str, study: &StudyDefini
             }
             Ok(_) => {}
             // Its problems are told once, however many items show it.
-            Err(problems) if refused.insert(path) => wrong.extend(problems),
+            Err(problems) if refused.insert(path.clone()) => wrong.extend(problems),
             Err(_) => {}
         }
     }

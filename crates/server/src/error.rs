@@ -26,9 +26,6 @@ pub enum StartError {
     /// The data folder cannot be used.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// A study is wrong.
-    #[error(transparent)]
-    Study(#[from] StudyFileError),
     /// The key of signed links can be neither read nor made.
     #[error("link-key: {0}")]
     LinkKey(std::io::Error),

@@ -3,14 +3,19 @@
 //! [`Server::open`] opens a data folder, [`Server::start`] also makes the stimuli and listens. Studies come from the
 //! folder that is built in and from `DATA/studies/`; a `DATA` laid out like `stimuli/` adds to what is built in or replaces it.
 
+mod address;
 pub mod api;
 mod app;
+mod audit;
 mod check;
+mod connections;
+mod content;
 mod error;
 mod events;
 mod export;
 mod extract;
 mod headers;
+mod integrity;
 mod library;
 mod limiter;
 pub mod links;
@@ -18,13 +23,18 @@ mod making;
 mod participants;
 mod password;
 mod picture;
+mod presenting;
 mod previews;
+mod proxies;
+mod rarely;
+mod remembered;
 mod render;
 pub mod results;
 mod routes;
 mod selection;
 mod server;
 pub mod shipped;
+mod starting;
 mod table;
 mod viewer;
 mod web;
@@ -37,6 +47,8 @@ pub use export::{codebook_csv, responses_csv, responses_table, spreadsheet};
 pub use library::Library;
 pub use making::{Made, Maker, Making, Task};
 pub use participants::participants_table;
+pub use password::PasswordSource;
+pub use proxies::TrustedProxies;
 pub use render::RenderMaker;
 pub use routes::openapi_json;
 pub use selection::{Include, Selection, SelectionError, VersionRef, With};

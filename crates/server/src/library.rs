@@ -2,10 +2,12 @@
 
 use crate::check;
 use crate::error::StudyFileError;
+use crate::remembered::{Known, Remembered, SceneFacts};
 use kelir_scene::{Assets, Scene};
+use kelir_store::sha256_hex;
 use kelir_study::{Problem, StudyDefinition, StudyErrors};
 use rust_embed::RustEmbed;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,21 +23,20 @@ pub struct Library {
     folder: PathBuf,
     /// What was learnt of scenes that were read: reading one rasterises its puppets, which takes a while.
     known: Arc<Mutex<HashMap<String, SceneFacts>>>,
-}
-
-/// What a study needs to know of a scene.
-#[derive(Clone, Debug)]
-pub(crate) struct SceneFacts {
-    /// Hash over its values and files.
-    pub(crate) sha256: String,
-    /// Whether it has a timeline.
-    pub(crate) moves: bool,
+    /// What earlier starts learnt, where this one may keep it.
+    remembered: Option<Arc<Mutex<Remembered>>>,
 }
 
 impl Library {
     /// The library of a data folder.
     pub fn new(folder: &Path) -> Library {
-        Library { folder: folder.to_owned(), known: Arc::default() }
+        Library { folder: folder.to_owned(), known: Arc::default(), remembered: None }
+    }
+
+    /// The library of a server's data folder, which keeps in it what it learns of scenes.
+    pub(crate) fn remembering(folder: &Path) -> Library {
+        let remembered = Some(Arc::new(Mutex::new(Remembered::load(folder))));
+        Library { remembered, ..Library::new(folder) }
     }
 
     /// What ships inside the binary alone.
@@ -125,9 +126,30 @@ impl Library {
         if let Some(facts) = known().get(path) {
             return Ok(facts.clone());
         }
-        let scene = self.scene(path)?;
-        let facts = SceneFacts { sha256: scene.sha256().to_owned(), moves: scene.timeline().is_some() };
+        let facts = match self.recalled(path) {
+            Some(facts) => facts,
+            None => self.learnt(path)?,
+        };
         known().insert(path.to_owned(), facts.clone());
+        Ok(facts)
+    }
+
+    /// What an earlier start learnt of a scene whose files are still the same.
+    fn recalled(&self, path: &str) -> Option<SceneFacts> {
+        let remembered = self.remembered.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner);
+        remembered.facts(path, |file| self.read(file).ok().map(|bytes| sha256_hex(&bytes)))
+    }
+
+    /// What a scene is, read anew.
+    fn learnt(&self, path: &str) -> Result<SceneFacts, Vec<Problem>> {
+        let reading = Reading { library: self, files: Mutex::default() };
+        let scene = self.scene_by(path, &reading)?;
+        let facts = SceneFacts { sha256: scene.sha256().to_owned(), moves: scene.timeline().is_some() };
+        if let Some(remembered) = &self.remembered {
+            let files = reading.files.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let known = Known { files, facts: facts.clone() };
+            remembered.lock().unwrap_or_else(PoisonError::into_inner).keep(&self.folder, path, known);
+        }
         Ok(facts)
     }
 
@@ -136,13 +158,17 @@ impl Library {
     /// # Errors
     /// Everything that is wrong with it.
     pub fn scene(&self, path: &str) -> Result<Scene, Vec<Problem>> {
+        self.scene_by(path, self)
+    }
+
+    fn scene_by(&self, path: &str, files: &dyn Assets) -> Result<Scene, Vec<Problem>> {
         let whole = |rule: String| {
             vec![Problem { file: path.to_owned(), field: "scene".to_owned(), value: None, rule }]
         };
-        let bytes = self.read(path).map_err(|error| whole(error.to_string()))?;
+        let bytes = files.read(path).map_err(|error| whole(error.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|_| whole("is no UTF-8 text".to_owned()))?;
         let path = normalise(path).ok_or_else(|| whole("leads out of the study's folders".to_owned()))?;
-        Scene::parse(&path, &text, self).map_err(|errors| {
+        Scene::parse(&path, &text, files).map_err(|errors| {
             let problems = errors.problems().iter().cloned();
             problems.map(|p| Problem { file: p.file, field: p.field, value: p.value, rule: p.rule }).collect()
         })
@@ -152,6 +178,21 @@ impl Library {
 impl Assets for Library {
     fn read(&self, path: &str) -> io::Result<Vec<u8>> {
         Library::read(self, path)
+    }
+}
+
+/// The library, noting what is read from it.
+struct Reading<'a> {
+    library: &'a Library,
+    files: Mutex<BTreeMap<String, String>>,
+}
+
+impl Assets for Reading<'_> {
+    fn read(&self, path: &str) -> io::Result<Vec<u8>> {
+        let bytes = self.library.read(path)?;
+        let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        files.insert(path.to_owned(), sha256_hex(&bytes));
+        Ok(bytes)
     }
 }
 

@@ -176,6 +176,12 @@ pub(crate) async fn make(
                 }
             }
         };
+        // What browsers get is packed beforehand, so that no participant waits for it.
+        progress(event(1.0, "packing"));
+        match store.packing(&info.sha256).await {
+            Err(error @ StoreError::Undecodable(_)) => return Err(failed(error.to_string())),
+            packed => packed?,
+        };
         made.push(StudyStimulus {
             item: task.pair.id.clone(),
             condition: task.name.to_owned(),
@@ -214,7 +220,7 @@ async fn intact(store: &Store, job_key: &str) -> Result<Option<(StimulusInfo, Va
 }
 
 /// The frames that a manifest names, each once.
-fn frames(manifest: &[u8]) -> Vec<String> {
+pub(crate) fn frames(manifest: &[u8]) -> Vec<String> {
     let manifest: Value = serde_json::from_slice(manifest).unwrap_or_default();
     let mut frames: Vec<String> = manifest["frames"]
         .as_array()

@@ -10,6 +10,17 @@ use std::io::{ErrorKind, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
+/// Where the password that is in force comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PasswordSource {
+    /// It was given at the start, which the file in the data folder is not asked for.
+    Given,
+    /// This file.
+    File(PathBuf),
+    /// An earlier start: there is no file, and the database has its hash.
+    Stored,
+}
+
 /// The one researcher there is so far.
 pub(crate) const RESEARCHER: &str = "researcher";
 
@@ -19,8 +30,8 @@ pub(crate) fn file(data: &Path) -> PathBuf {
 }
 
 /// Sees to it that the database holds the hash of the password in force: `chosen`, else the file's, else, when there is no
-/// hash yet, a new one that is written to the file.
-pub(crate) async fn set_up(store: &Store, chosen: Option<&str>) -> Result<(), StartError> {
+/// hash yet, a new one that is written to the file. Answers which it is.
+pub(crate) async fn set_up(store: &Store, chosen: Option<&str>) -> Result<PasswordSource, StartError> {
     let path = file(store.folder());
     let stored = store.password_hash(RESEARCHER).await?;
     let failed = |error: std::io::Error| StartError::Password(format!("{}: {error}", path.display()));
@@ -34,7 +45,7 @@ pub(crate) async fn set_up(store: &Store, chosen: Option<&str>) -> Result<(), St
             Ok(_) => return Err(StartError::Password(format!("{} is empty", path.display()))),
             Err(error) if error.kind() != ErrorKind::NotFound => return Err(failed(error)),
             // The file was taken away on purpose: the hash alone is enough.
-            Err(_) if stored.is_some() => return Ok(()),
+            Err(_) if stored.is_some() => return Ok(PasswordSource::Stored),
             Err(_) => {
                 let password = generate();
                 OpenOptions::new()
@@ -57,7 +68,7 @@ pub(crate) async fn set_up(store: &Store, chosen: Option<&str>) -> Result<(), St
     if let Some(hash) = fresh {
         store.set_password_hash(RESEARCHER, &hash).await?;
     }
-    Ok(())
+    Ok(if chosen.is_some() { PasswordSource::Given } else { PasswordSource::File(path) })
 }
 
 fn hash(password: &str) -> Result<String, StartError> {
@@ -122,19 +133,19 @@ mod tests {
             let store = store.clone();
             async move { verify(&password, &store.password_hash(RESEARCHER).await.unwrap().unwrap()) }
         };
-        set_up(&store, None).await.unwrap();
+        assert_eq!(set_up(&store, None).await.unwrap(), PasswordSource::File(file(dir.path())));
         let path = file(dir.path());
         let first = std::fs::read_to_string(&path).unwrap().trim().to_owned();
         assert_eq!(first.len(), 23);
         assert_eq!(std::fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
         set_up(&store, None).await.unwrap();
         assert!(holds(first.clone()).await);
-        set_up(&store, Some("chosen by hand")).await.unwrap();
+        assert_eq!(set_up(&store, Some("chosen by hand")).await.unwrap(), PasswordSource::Given);
         assert!(holds("chosen by hand".to_owned()).await && !holds(first.clone()).await);
         set_up(&store, None).await.unwrap();
         assert!(holds(first.clone()).await);
         std::fs::remove_file(&path).unwrap();
-        set_up(&store, None).await.unwrap();
+        assert_eq!(set_up(&store, None).await.unwrap(), PasswordSource::Stored);
         assert!(holds(first).await && !path.exists());
         assert!(set_up(&store, Some("short")).await.is_err());
     }

@@ -20,6 +20,8 @@ pub(crate) struct Preview {
     pub(crate) slot: u32,
     pub(crate) trials: Vec<PlannedTrial>,
     pub(crate) more: bool,
+    /// The language that it is taken in.
+    pub(crate) language: String,
     pub(crate) consented: bool,
     /// By trial index, as canonical JSON.
     pub(crate) answers: BTreeMap<u32, String>,

@@ -1,19 +1,29 @@
 //! Opening, starting and stopping.
 
-use crate::app::{App, LoadedStudy, Served, Stimuli};
+use crate::app::{App, BrokenStudy, LoadedStudy, Served, Stimuli};
+use crate::audit::AUDIT;
+use crate::connections::{self, Guard, Routes};
 use crate::error::StartError;
 use crate::library::Library;
 use crate::links::Links;
 use crate::making::{self, Maker, Making};
-use crate::{password, routes};
+use crate::password::{self, PasswordSource};
+use crate::proxies::TrustedProxies;
+use crate::{integrity, routes, starting};
 use axum::Router;
 use kelir_store::Store;
+use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
+use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
+
+/// How long requests under way may take once the server is asked to stop, and the database after them.
+const GRACE: Duration = Duration::from_secs(10);
+const CLOSING: Duration = Duration::from_secs(3);
 
 /// What a server is started with.
 pub struct ServerConfig {
@@ -25,6 +35,8 @@ pub struct ServerConfig {
     pub password: Option<String>,
     /// Whether cookies are sent over HTTPS alone; for a server behind TLS.
     pub secure_cookies: bool,
+    /// Proxies whose `X-Forwarded-For` is believed.
+    pub trusted_proxies: TrustedProxies,
     /// Who draws the stimuli.
     pub maker: Arc<dyn Maker>,
     /// Told how far the stimuli are; called from a worker thread.
@@ -35,54 +47,64 @@ pub struct ServerConfig {
 #[derive(Clone)]
 pub struct Server {
     app: Arc<App>,
+    password: PasswordSource,
 }
 
 impl Server {
-    /// Opens the data folder, checks every study and sets the researcher's password up.
+    /// Opens the data folder, checks every study and sets the researcher's password up. A study that is wrong is not served, and the others are.
     ///
     /// # Errors
-    /// The folder cannot be used, or a study is wrong.
+    /// The folder cannot be used.
     pub async fn open(config: &ServerConfig) -> Result<Server, StartError> {
-        let library = Library::new(&config.data);
-        let studies: Vec<_> =
-            library.study_files().iter().map(|path| library.study(path)).collect::<Result<_, _>>()?;
         let store = Store::open(&config.data).await?;
-        password::set_up(&store, config.password.as_deref()).await?;
+        let password = password::set_up(&store, config.password.as_deref()).await?;
+        let library = Library::remembering(&config.data);
+        let (mut studies, mut broken) = (Vec::new(), BTreeMap::new());
+        for path in library.study_files() {
+            match library.study(&path) {
+                Ok(study) => studies.push(study),
+                Err(error) => {
+                    let wrong = BrokenStudy::new(&library, &path, &error);
+                    tracing::error!(target: AUDIT, study = wrong.id, "is not served: {}", wrong.reason);
+                    broken.insert(wrong.id.clone(), wrong);
+                }
+            }
+        }
         for study in &studies {
             store.put_study_file(study).await?;
         }
         let links = Links::open(&config.data).map_err(StartError::LinkKey)?;
-        let app = App::new(store, library, config.maker.clone(), studies, config.secure_cookies, links);
-        Ok(Server { app: Arc::new(app) })
+        let app = App::new(store, library, studies, broken, config, links);
+        Ok(Server { app: Arc::new(app), password })
     }
 
-    /// Opens, listens, and makes what is missing of the stimuli while it already answers (503 for studies not ready).
+    /// Listens, opens, and makes what is missing of the stimuli while it already answers (503 for what is not ready).
     ///
     /// # Errors
     /// As [`Server::open`], and when the address cannot be listened on.
     pub async fn start(config: ServerConfig) -> Result<Handle, StartError> {
-        let server = Server::open(&config).await?;
         let failed = |source| StartError::Listen { address: config.listen, source };
         let listener = TcpListener::bind(config.listen).await.map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
         let (stop, stopped) = watch::channel(false);
+        let routes: Routes = Arc::new(RwLock::new(starting::router()));
+        let guard = Guard::new(config.trusted_proxies.clone());
+        let serving = tokio::spawn(connections::serve(listener, routes.clone(), guard, stopped));
+        // Where this fails, `stop` is dropped, which ends the listener.
+        let server = Server::open(&config).await?;
+        *routes.write().unwrap_or_else(PoisonError::into_inner) = server.router();
+        tracing::info!(target: AUDIT, %address, studies = server.app.studies.len(), "started");
         let (made, ready) = watch::channel(None);
         let maker = {
-            let (server, progress) = (server.clone(), config.progress.clone());
+            let (server, progress, mut ended) = (server.clone(), config.progress.clone(), stop.subscribe());
             tokio::spawn(async move {
                 let outcome = server.make_stimuli(progress.as_ref()).await;
                 made.send_replace(Some(outcome));
-            })
-        };
-        let serving = {
-            let router = server.router().into_make_service_with_connect_info::<SocketAddr>();
-            let mut stopped = stopped;
-            tokio::spawn(async move {
-                let stop = async move {
-                    // An error means that the handle is gone, which also means to stop.
-                    let _ = stopped.wait_for(|stop| *stop).await;
-                };
-                axum::serve(listener, router).with_graceful_shutdown(stop).await
+                tokio::select! {
+                    () = integrity::watch(server.app) => {}
+                    // To stop, or because the handle is gone.
+                    _ = ended.changed() => {}
+                }
             })
         };
         Ok(Handle { server, address, stop, ready, maker, serving })
@@ -96,7 +118,7 @@ impl Server {
     /// Makes what is missing of every study's stimuli, one after another.
     ///
     /// # Errors
-    /// A line for each study whose stimuli could not be made; the others are ready all the same.
+    /// A line for each study that cannot be taken, because its file is wrong or its stimuli could not be made; the others are ready all the same.
     pub async fn make_stimuli(&self, progress: &(dyn Fn(Making) + Send + Sync)) -> Result<(), String> {
         let mut wrong = Vec::new();
         for (id, loaded) in &self.app.studies {
@@ -122,7 +144,15 @@ impl Server {
                 }
             }
         }
+        wrong
+            .extend(self.app.broken.values().map(|broken| format!("study {}: {}", broken.id, broken.reason)));
         if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
+    }
+
+    /// Looks once whether all that is stored is whole, and mends what can be mended; answers what is wrong. A running server does so every hour.
+    pub async fn check_integrity(&self) -> Vec<String> {
+        integrity::look(&self.app).await;
+        self.app.integrity.faults()
     }
 
     /// Ids of the studies that are served, sorted.
@@ -135,15 +165,15 @@ impl Server {
         &self.app.store
     }
 
-    /// The file with the generated researcher password, if there is one.
-    pub fn password_file(&self) -> Option<PathBuf> {
-        Some(password::file(self.app.store.folder())).filter(|path| path.exists())
+    /// Where the researcher's password that is in force comes from.
+    pub fn password_source(&self) -> &PasswordSource {
+        &self.password
     }
 }
 
 /// Notes that a study cannot be taken, and why.
 fn failed(id: &str, loaded: &LoadedStudy, reason: String, wrong: &mut Vec<String>) {
-    tracing::error!("study {id}: {reason}");
+    tracing::error!(target: AUDIT, study = id, "cannot be taken: {reason}");
     wrong.push(format!("study {id}: {reason}"));
     loaded.set_stimuli(Stimuli::Failed(reason));
 }
@@ -155,7 +185,7 @@ pub struct Handle {
     stop: watch::Sender<bool>,
     ready: watch::Receiver<Option<Result<(), String>>>,
     maker: JoinHandle<()>,
-    serving: JoinHandle<std::io::Result<()>>,
+    serving: JoinHandle<()>,
 }
 
 impl Handle {
@@ -182,16 +212,17 @@ impl Handle {
     }
 
     /// Finishes the requests under way, for at most ten seconds, and closes the database.
-    pub async fn shutdown(self) {
+    pub async fn shutdown(mut self) {
         self.maker.abort();
         self.stop.send_replace(true);
-        let limit = std::time::Duration::from_secs(10);
-        match tokio::time::timeout(limit, self.serving).await {
-            Ok(Ok(Ok(()))) => {}
-            Ok(Ok(Err(error))) => tracing::error!("serving: {error}"),
-            Ok(Err(error)) => tracing::error!("serving: {error}"),
-            Err(_) => tracing::warn!("requests still under way after ten seconds were cut off"),
+        if tokio::time::timeout(GRACE, &mut self.serving).await.is_err() {
+            tracing::warn!("requests still under way after {} seconds were cut off", GRACE.as_secs());
+            self.serving.abort();
         }
-        self.server.app.store.close().await;
+        // What was cut off may still hold a connection of the database.
+        if tokio::time::timeout(CLOSING, self.server.app.store.close()).await.is_err() {
+            tracing::warn!("the database was still in use; what was acknowledged is on disk");
+        }
+        tracing::info!(target: AUDIT, "stopped");
     }
 }

@@ -1,5 +1,6 @@
 //! Tables of a study's data: columns that say what they are, and cells as text. CSV and spreadsheets are written from them.
 
+use kelir_report::csv_cell;
 use kelir_study::schema::Column;
 
 /// A table with what its columns are.
@@ -51,23 +52,10 @@ pub fn codebook_of(columns: &[Column]) -> Table {
     }
 }
 
-/// RFC 4180: quoted where need be, CRLF at the end. A cell that a spreadsheet would take for a formula gets an apostrophe before it.
+/// A row of cells, CRLF at the end.
 pub(crate) fn write_row(out: &mut String, cells: impl IntoIterator<Item = String>) {
-    for (i, mut cell) in cells.into_iter().enumerate() {
-        if i > 0 {
-            out.push(',');
-        }
-        if cell.starts_with(['=', '+', '@', '\t', '\r'])
-            || (cell.starts_with('-') && cell.parse::<f64>().is_err())
-        {
-            cell.insert(0, '\'');
-        }
-        if cell.contains([',', '"', '\n', '\r']) {
-            out.push_str(&format!("\"{}\"", cell.replace('"', "\"\"")));
-        } else {
-            out.push_str(&cell);
-        }
-    }
+    let cells: Vec<String> = cells.into_iter().map(|cell| csv_cell(&cell)).collect();
+    out.push_str(&cells.join(","));
     out.push_str("\r\n");
 }
 
@@ -80,5 +68,8 @@ mod tests {
         let mut out = String::new();
         write_row(&mut out, ["a", "b,c", "d\"e", "=1+1", "-3.5", "-cmd"].map(str::to_owned));
         assert_eq!(out, "a,\"b,c\",\"d\"\"e\",'=1+1,-3.5,'-cmd\r\n");
+        out.clear();
+        write_row(&mut out, ["＝1+1", "＠SUM(A1)"].map(str::to_owned));
+        assert_eq!(out, "'＝1+1,'＠SUM(A1)\r\n");
     }
 }

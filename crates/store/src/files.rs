@@ -1,4 +1,4 @@
-//! Stimulus bytes on disk, named by their SHA-256: written whole or not at all, checked whenever they are read.
+//! Stimulus bytes on disk, named by their SHA-256: written whole or not at all.
 
 use crate::error::StoreError;
 use sha2::{Digest, Sha256};
@@ -60,16 +60,30 @@ impl Files {
 
     /// The bytes of this hash, `None` when there are none.
     pub(crate) fn get(&self, sha256: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        match self.read(sha256)? {
+            Some(bytes) if sha256_hex(&bytes) != sha256 => {
+                Err(StoreError::Damaged { sha256: sha256.to_owned() })
+            }
+            read => Ok(read),
+        }
+    }
+
+    /// The bytes under this hash, unchecked.
+    pub(crate) fn read(&self, sha256: &str) -> Result<Option<Vec<u8>>, StoreError> {
         if !is_sha256(sha256) {
             return Ok(None);
         }
         let path = self.path(sha256);
         match fs::read(&path) {
-            Ok(bytes) if sha256_hex(&bytes) == sha256 => Ok(Some(bytes)),
-            Ok(_) => Err(StoreError::Damaged { sha256: sha256.to_owned() }),
+            Ok(bytes) => Ok(Some(bytes)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(source) => Err(StoreError::File { path, source }),
         }
+    }
+
+    /// Whether there is a file under this hash, of this length.
+    pub(crate) fn has(&self, sha256: &str, size_bytes: u64) -> bool {
+        is_sha256(sha256) && fs::metadata(self.path(sha256)).is_ok_and(|file| file.len() == size_bytes)
     }
 }
 

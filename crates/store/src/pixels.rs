@@ -1,7 +1,7 @@
 //! What a stimulus shows, whatever its file is like: a hash over decoded pixels, so that a file may be packed anew without a new version.
 
 use crate::stimuli::ANIMATION;
-use image::{DynamicImage, ImageDecoder, ImageReader};
+use image::{DynamicImage, ImageDecoder, ImageReader, RgbaImage};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use std::io::Cursor;
@@ -21,16 +21,33 @@ pub(crate) struct Pixels {
 /// # Errors
 /// Why it cannot be decoded, as a sentence's end.
 pub fn picture_size(bytes: &[u8]) -> Result<[u32; 2], String> {
-    decode(bytes).map(|image| [image.width(), image.height()])
+    decode(bytes).map(|(image, _)| [image.width(), image.height()])
 }
 
 /// An animation's manifest, as far as it says what is shown.
 #[derive(Deserialize)]
-struct Manifest {
-    fps: f64,
+pub(crate) struct Manifest {
+    pub(crate) fps: f64,
     #[serde(rename = "loop")]
-    repeat: bool,
-    frames: Vec<String>,
+    pub(crate) repeat: bool,
+    /// Hashes of the frames' files.
+    pub(crate) frames: Vec<String>,
+}
+
+impl Manifest {
+    pub(crate) fn read(bytes: &[u8]) -> Result<Manifest, String> {
+        serde_json::from_slice(bytes).map_err(|error| format!("is no manifest of an animation: {error}"))
+    }
+
+    /// The frame that is named so; `file` gives its bytes.
+    pub(crate) fn picture(
+        &self,
+        name: &str,
+        file: &dyn Fn(&str) -> Option<Vec<u8>>,
+    ) -> Result<DynamicImage, String> {
+        let bytes = file(name).ok_or_else(|| format!("names a frame that is not stored: {name}"))?;
+        Ok(decode(&bytes)?.0)
+    }
 }
 
 /// The pixels of stored bytes; `frame` gives the bytes that a manifest names by hash.
@@ -43,49 +60,74 @@ pub(crate) fn of(
     frame: &dyn Fn(&str) -> Option<Vec<u8>>,
 ) -> Result<Pixels, String> {
     if media_type != ANIMATION {
-        let image = decode(bytes)?;
-        let size = [image.width(), image.height()];
-        return Ok(Pixels { size, sha256: hash(size, "1 0 false", [Ok(image)])? });
+        let image = decode(bytes)?.0.into_rgba8();
+        let mut hash = PixelsHash::still(image.dimensions().into());
+        hash.frame(&image)?;
+        return Ok(hash.finish());
     }
-    let manifest: Manifest =
-        serde_json::from_slice(bytes).map_err(|error| format!("is no manifest of an animation: {error}"))?;
-    let missing = |name: &str| format!("names a frame that is not stored: {name}");
-    let decoded = |name: &String| decode(&frame(name).ok_or_else(|| missing(name))?);
-    let first = decoded(manifest.frames.first().ok_or("names no frames")?)?;
+    let manifest = Manifest::read(bytes)?;
+    let first = manifest.picture(manifest.frames.first().ok_or("names no frames")?, frame)?;
     let size = [first.width(), first.height()];
-    let fps = kelir_jcs::canonical(manifest.fps.into()).map_err(|error| error.to_string())?;
-    let header = format!("{} {fps} {}", manifest.frames.len(), manifest.repeat);
-    Ok(Pixels { size, sha256: hash(size, &header, manifest.frames.iter().map(decoded))? })
+    let mut hash = PixelsHash::animation(size, manifest.frames.len(), manifest.fps, manifest.repeat)?;
+    for name in &manifest.frames {
+        hash.frame(&manifest.picture(name, frame)?.into_rgba8())?;
+    }
+    Ok(hash.finish())
 }
 
-fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
+/// A picture as a browser shows it, turned as it says, and its colour profile.
+pub(crate) fn decode(bytes: &[u8]) -> Result<(DynamicImage, Option<Vec<u8>>), String> {
     let wrong = |error: image::ImageError| format!("is no PNG or JPEG: {error}");
     let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
     let mut decoder =
         reader.map_err(|error| format!("cannot be read: {error}"))?.into_decoder().map_err(wrong)?;
     let orientation = decoder.orientation().map_err(wrong)?;
+    let profile = decoder.icc_profile().map_err(wrong)?;
     let mut image = DynamicImage::from_decoder(decoder).map_err(wrong)?;
-    // As a browser shows it.
     image.apply_orientation(orientation);
-    Ok(image)
+    Ok((image, profile))
 }
 
-fn hash(
+/// The hash of what is shown, taken frame by frame.
+pub(crate) struct PixelsHash {
     size: [u32; 2],
-    header: &str,
-    frames: impl IntoIterator<Item = Result<DynamicImage, String>>,
-) -> Result<String, String> {
-    let [width, height] = size;
-    let mut hasher = Sha256::new();
-    hasher.update(format!("kelir-pixels/1\n{width} {height} {header}\n"));
-    for frame in frames {
-        let frame = frame?;
-        if [frame.width(), frame.height()] != size {
-            return Err(format!("has frames of different sizes: {} × {}", frame.width(), frame.height()));
-        }
-        hasher.update(frame.into_rgba8().as_raw());
+    hasher: Sha256,
+}
+
+impl PixelsHash {
+    pub(crate) fn still(size: [u32; 2]) -> PixelsHash {
+        PixelsHash::new(size, "1 0 false")
     }
-    Ok(hasher.finalize().iter().map(|b| format!("{b:02x}")).collect())
+
+    pub(crate) fn animation(
+        size: [u32; 2],
+        frames: usize,
+        fps: f64,
+        repeat: bool,
+    ) -> Result<PixelsHash, String> {
+        let fps = kelir_jcs::canonical(fps.into()).map_err(|error| error.to_string())?;
+        Ok(PixelsHash::new(size, &format!("{frames} {fps} {repeat}")))
+    }
+
+    fn new(size: [u32; 2], header: &str) -> PixelsHash {
+        let [width, height] = size;
+        let mut hasher = Sha256::new();
+        hasher.update(format!("kelir-pixels/1\n{width} {height} {header}\n"));
+        PixelsHash { size, hasher }
+    }
+
+    pub(crate) fn frame(&mut self, image: &RgbaImage) -> Result<(), String> {
+        if <[u32; 2]>::from(image.dimensions()) != self.size {
+            return Err(format!("has frames of different sizes: {} × {}", image.width(), image.height()));
+        }
+        self.hasher.update(image.as_raw());
+        Ok(())
+    }
+
+    pub(crate) fn finish(self) -> Pixels {
+        let sha256 = self.hasher.finalize().iter().map(|b| format!("{b:02x}")).collect();
+        Pixels { size: self.size, sha256 }
+    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::adaptive::Adaptive;
 use crate::conduct::{ResponseRules, SessionRules};
+use crate::languages::{self, Translation};
 use crate::trials::{TrialKind, TrialName};
 use crate::visits::Flag;
 use kelir_stats::psychometric::{Lapse, Sigmoid};
@@ -50,6 +51,12 @@ pub struct StudyDefinition {
     /// Whose visit is whose.
     #[serde(default, skip_serializing_if = "is_default")]
     pub session: SessionRules,
+    /// The language of its texts, as a BCP 47 tag.
+    #[serde(default = "languages::unnamed", skip_serializing_if = "languages::is_unnamed")]
+    pub language: String,
+    /// What participants read in other languages, by tag.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub translations: BTreeMap<String, Translation>,
 }
 
 /// The code at the end and where it leads.

@@ -5,6 +5,7 @@
 mod conduct;
 mod definition;
 mod fields;
+mod languages;
 mod parse;
 mod problems;
 #[cfg(test)]
@@ -28,6 +29,7 @@ pub use definition::{
     Block, Completion, Condition, Direction, GUESS, Item, Kind, Psychometric, Screening, StudyDefinition,
     Texts,
 };
+pub use languages::Translation;
 pub use plan::{Decision, Procedures, Trial, TrialPlan, next_trials};
 pub use problems::{Problem, StudyErrors};
 pub use trials::TrialKind;

@@ -8,6 +8,7 @@ mod psychometric;
 use crate::conduct::{NEWEST_EDITION, ResponseRules, SessionRules};
 use crate::definition::{Block, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts};
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
+use crate::languages;
 use crate::problems::{Problem, StudyErrors};
 use crate::trials::TrialKind;
 use crate::visits::Flag;
@@ -16,6 +17,9 @@ use toml::{Table, Value};
 
 /// Two stimuli of width w and a gap of w/20 fit a 1280-pixel window with 16 pixels of margin on either side.
 const MAX_WIDTH: i64 = 608;
+
+pub(crate) const TITLE: &str = "a text of 1 to 200 characters";
+pub(crate) const QUESTION: &str = "a text of 1 to 300 characters";
 
 impl StudyDefinition {
     /// Reads a study file. `file` names it in messages; its stem is the study's id.
@@ -77,8 +81,8 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
         gatherer.report("file name", Some(&Value::String(id.clone())), format!("must be {IDENTIFIER}"));
     }
     let mut fields = Fields::new(gatherer, "", table);
-    let title = fields.need("title", "a text of 1 to 200 characters", |v| text(v, 200));
-    let question = fields.need("question", "a text of 1 to 300 characters", |v| text(v, 300));
+    let title = fields.need("title", TITLE, |v| text(v, 200));
+    let question = fields.need("question", QUESTION, |v| text(v, 300));
     let seed = fields.need("seed", "an integer from 0 to 2^53", |v| integer(v, 0, 1 << 53));
     let size = fields.need(
         "size",
@@ -104,6 +108,8 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
     let completion = completion::read(gatherer, &mut fields, session.as_ref());
     let screening = read_screening(gatherer, &mut fields);
     let texts = read_texts(gatherer, &mut fields);
+    let language = languages::read_language(&mut fields);
+    let translations = languages::read_translations(gatherer, &mut fields, language.as_deref());
     let blocks = read_blocks(gatherer, &mut fields);
     let conditions = conditions::read(gatherer, &mut fields, &blocks);
     fields.finish();
@@ -124,6 +130,8 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
         edition: u32::try_from(edition?).ok()?,
         response: response?,
         session: session?,
+        language: language?,
+        translations: translations?,
     })
 }
 
@@ -159,10 +167,10 @@ fn read_screening(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Sc
     })
 }
 
-fn read_texts(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Texts> {
+pub(crate) fn read_texts(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Texts> {
     let value =
         fields.need("texts", "a table with welcome, consent, instructions, debriefing and thanks", Some)?;
-    let mut fields = Fields::of(gatherer, "texts".to_owned(), value)?;
+    let mut fields = Fields::of(gatherer, fields.path_of("texts"), value)?;
     let mut read = |key| {
         fields.need(
             key,

@@ -3,7 +3,7 @@
 //! Everything is hashed as RFC 8785 canonical JSON (JCS): keys sorted, numbers as ECMAScript writes them, −0 as 0.
 
 use crate::definition::{StudyDefinition, hex};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
 /// One picture or animation that a version shows.
@@ -20,8 +20,8 @@ pub struct VersionStimulus {
 }
 
 /// Keys of a study that nobody judges by: what is read before and after, and how people are received. A block's title is for researchers alone.
-const NOT_JUDGED_BY: [&str; 7] =
-    ["title", "estimated_minutes", "idle_minutes", "completion", "conduct", "panel", "session"];
+const NOT_JUDGED_BY: [&str; 8] =
+    ["title", "estimated_minutes", "idle_minutes", "completion", "conduct", "panel", "session", "language"];
 const TEXTS_NOT_JUDGED_BY: [&str; 4] = ["welcome", "consent", "debriefing", "thanks"];
 
 impl StudyDefinition {
@@ -36,8 +36,12 @@ impl StudyDefinition {
         let mut value = self.value();
         if let Value::Object(study) = &mut value {
             NOT_JUDGED_BY.iter().for_each(|key| drop(study.remove(*key)));
-            if let Some(Value::Object(texts)) = study.get_mut("texts") {
-                TEXTS_NOT_JUDGED_BY.iter().for_each(|key| drop(texts.remove(*key)));
+            without_texts(study);
+            let translations = study.get_mut("translations").and_then(Value::as_object_mut);
+            for translation in translations.into_iter().flat_map(|all| all.values_mut()) {
+                let Value::Object(translation) = translation else { continue };
+                translation.remove("title");
+                without_texts(translation);
             }
             for block in study.get_mut("blocks").and_then(Value::as_array_mut).into_iter().flatten() {
                 block.as_object_mut().and_then(|block| block.remove("title"));
@@ -63,6 +67,13 @@ impl StudyDefinition {
 
     fn value(&self) -> Value {
         serde_json::to_value(self).expect("a definition holds only finite numbers and string keys")
+    }
+}
+
+/// Takes out the texts that nobody judges by.
+fn without_texts(read: &mut Map<String, Value>) {
+    if let Some(Value::Object(texts)) = read.get_mut("texts") {
+        TEXTS_NOT_JUDGED_BY.iter().for_each(|key| drop(texts.remove(*key)));
     }
 }
 

@@ -9,8 +9,8 @@ no-study-title = Diese Studie gibt es nicht
 no-study = Bitte prüfen Sie den Link, den Sie bekommen haben, oder fragen Sie die Person, die ihn Ihnen geschickt hat.
 finished-title = Diese Studie ist abgeschlossen
 finished = Mit diesem Link wurde sie schon abgeschlossen, und teilnehmen kann man einmal. Der Code steht in dem Browser, in dem sie abgeschlossen wurde.
-begun-title = Diese Studie ist begonnen
-begun = Mit diesem Link wurde sie schon begonnen, und teilnehmen kann man einmal. Bitte machen Sie in dem Browser weiter, in dem sie begonnen wurde.
+begun-elsewhere-title = Diese Studie ist begonnen
+begun-elsewhere = Mit diesem Link wurde sie schon begonnen, und teilnehmen kann man einmal. Bitte machen Sie in dem Browser weiter, in dem sie begonnen wurde.
 link-title = Dieser Link kann nicht verwendet werden
 link = Was der Link über Sie sagt, kann nicht gespeichert werden. Bitte fragen Sie die Person, die ihn Ihnen geschickt hat, nach einem anderen.
 moved-title = In einem anderen Tab fortgesetzt
@@ -32,6 +32,7 @@ consent-minutes =
     }
 consent-print = Diese Seite drucken
 consent-decline = Wenn Sie lieber nicht teilnehmen möchten, schließen Sie diese Seite: Es wurde nichts gespeichert.
+language-switch = Sprache
 consent-agree = Ich willige ein und nehme teil
 
 # Anleitung
@@ -65,7 +66,7 @@ refresh-unknown = Dieser Browser gibt nicht an, wie oft sein Bildschirm neu geze
 refresh-missed = Diese Studie zeigt etwas { $ms } ms lang, und dieser Bildschirm wird nur alle { NUMBER($period_ms, minimumFractionDigits: 1, maximumFractionDigits: 1) } ms neu gezeichnet.
 
 # Warten
-pictures-coming = Die nächsten Bilder sind unterwegs; bitte warten Sie einen Moment.
+pictures-coming = Die Bilder sind unterwegs: { $here } von { $of } sind da ({ NUMBER($mb, minimumFractionDigits: 1, maximumFractionDigits: 1) } MB).
 pictures-slow = Die Bilder brauchen länger. Es geht nichts verloren; es geht von selbst weiter.
 picture-missing = Im Plan dieser Studie steht ein Bild, das sie nicht hat.
 picture-refused = Der Server gibt ein Bild nicht heraus (Status { $status }).
@@ -124,4 +125,3 @@ no-script = Diese Studie braucht JavaScript. Bitte schalten Sie es für diese Se
 trying-preview = Vorschau: Nichts wird gespeichert.
 trying-pilot = Probelauf: Antworten werden gespeichert und in keiner Auswertung gezählt.
 trying-restart = Von vorn beginnen
-link-title = Dieser Link kann nicht benutzt werden

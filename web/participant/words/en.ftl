@@ -9,8 +9,8 @@ no-study-title = There is no such study
 no-study = Please check the link you were given, or ask the person who sent it to you.
 finished-title = This study has been finished
 finished = It has been finished with this link already, and can be taken once. Its code is shown in the browser where it was finished.
-begun-title = This study has been begun
-begun = It has been begun with this link already, and can be taken once. Please go on in the browser where it was begun.
+begun-elsewhere-title = This study has been begun
+begun-elsewhere = It has been begun with this link already, and can be taken once. Please go on in the browser where it was begun.
 link-title = This link can't be used
 link = What the link says of you can't be stored. Please ask the person who sent it to you for another.
 moved-title = Continued in another tab
@@ -32,6 +32,7 @@ consent-minutes =
     }
 consent-print = Print this page
 consent-decline = If you would rather not take part, close this page: nothing has been stored.
+language-switch = Language
 consent-agree = I agree and take part
 
 # Instructions
@@ -65,7 +66,7 @@ refresh-unknown = This browser does not tell how often its display redraws, and 
 refresh-missed = This study shows something for { $ms } ms, and this display redraws only every { NUMBER($period_ms, minimumFractionDigits: 1, maximumFractionDigits: 1) } ms.
 
 # Waiting
-pictures-coming = The next pictures are on their way; please wait a moment.
+pictures-coming = The pictures are on their way: { $here } of { $of } are here ({ NUMBER($mb, minimumFractionDigits: 1, maximumFractionDigits: 1) } MB).
 pictures-slow = The pictures take longer to arrive. Nothing is lost; it goes on by itself.
 picture-missing = The plan of this study names a picture that it does not have.
 picture-refused = The server does not give out a picture (status { $status }).
@@ -124,4 +125,3 @@ no-script = This study needs JavaScript. Please switch it on for this page, or o
 trying-preview = Preview: nothing is stored.
 trying-pilot = Pilot: answers are stored, and left out of every analysis.
 trying-restart = Start again
-link-title = This link can't be used

@@ -170,7 +170,7 @@ for (const dpr of [1, 1.25, 1.5, 2, 2.625]) {
     assert.equal(await v.page.evaluate(() => devicePixelRatio), dpr);
     const screen = await screenOf(v);
     for (const side of ["left", "right"]) {
-      const stimulus = pixels(v.mock.stuff.bytes.get(v.mock.stuff.trials[0].shown[side].sha256).data);
+      const stimulus = pixels(v.mock.stuff.bytes.get(v.mock.stuff.trials[0].shown[side].sha256).pictures[0]);
       const box = await v.hook(`choice-${side}`).boundingBox();
       const at = [Math.round(box.x * dpr), Math.round(box.y * dpr)];
       assert.equal(differing(screen, stimulus, ...at), 0, side);

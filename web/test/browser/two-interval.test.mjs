@@ -73,7 +73,7 @@ for (const dpr of [1, 2]) {
     const at = [Math.round(box.x * dpr), Math.round(box.y * dpr)];
     const spoken = v.page.locator(".spoken");
     const { shown, trial_index } = v.mock.stuff.trials[0];
-    const bytes = (role) => pixels(v.mock.stuff.bytes.get(shown[role].sha256).data);
+    const bytes = (role) => pixels(v.mock.stuff.bytes.get(shown[role].sha256).pictures[0]);
     const grey = { width: 592, height: 333, at: () => [124, 124, 124] };
 
     const fixation = await screenOf(v);

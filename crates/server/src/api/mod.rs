@@ -2,6 +2,7 @@
 //! pages' TypeScript are read from these.
 
 mod auth;
+mod integrity;
 mod links;
 mod lists;
 mod problem;
@@ -11,6 +12,7 @@ mod studies;
 mod versions;
 
 pub use auth::{SignIn, SignedIn};
+pub use integrity::IntegrityReport;
 pub use kelir_study::trials::Answer;
 pub use links::{Link, NewLink, Trying, VisitKind};
 pub use lists::ListQuery;

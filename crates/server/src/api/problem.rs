@@ -30,6 +30,8 @@ worded! {
         Unauthorized = "unauthorized",
         /// That is not the password.
         WrongPassword = "wrong_password",
+        /// A page of another site sent the request.
+        CrossSite = "cross_site",
         /// The link is signed and not good: it has ended or was changed.
         LinkRefused = "link_refused",
         /// There is nothing of this name.
@@ -52,13 +54,11 @@ worded! {
         NotJson = "not_json",
         /// Fields of the body break their rules; `errors` names them all.
         InvalidField = "invalid_field",
-        /// Too many wrong passwords; `Retry-After` says how long to wait.
-        TooManyTries = "too_many_tries",
         /// Something is wrong on the server; its log has the reason.
         Internal = "internal",
-        /// The study's images are still being made; `Retry-After` says when to ask again.
+        /// The server is starting, or the study's images are still being made; `Retry-After` says when to ask again.
         NotReady = "not_ready",
-        /// The study's images could not be made.
+        /// The study cannot be taken at the moment; researchers see the reason in the console.
         StimuliFailed = "stimuli_failed",
     }
 }
@@ -75,6 +75,7 @@ impl ProblemCode {
             ProblemCode::LinkRefused => StatusCode::FORBIDDEN,
             ProblemCode::NotFound => StatusCode::NOT_FOUND,
             ProblemCode::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
+            ProblemCode::CrossSite => StatusCode::FORBIDDEN,
             ProblemCode::NoConsent
             | ProblemCode::AlreadyAnswered
             | ProblemCode::AlreadyBegun
@@ -83,7 +84,6 @@ impl ProblemCode {
             ProblemCode::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             ProblemCode::NotJson => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             ProblemCode::InvalidField => StatusCode::UNPROCESSABLE_ENTITY,
-            ProblemCode::TooManyTries => StatusCode::TOO_MANY_REQUESTS,
             ProblemCode::Internal => StatusCode::INTERNAL_SERVER_ERROR,
             ProblemCode::NotReady | ProblemCode::StimuliFailed => StatusCode::SERVICE_UNAVAILABLE,
         }
@@ -91,7 +91,7 @@ impl ProblemCode {
 
     /// Whether answers of this code say in `Retry-After` when to ask again.
     pub fn says_when(self) -> bool {
-        matches!(self, ProblemCode::TooManyTries | ProblemCode::NotReady)
+        matches!(self, ProblemCode::NotReady)
     }
 }
 
@@ -226,6 +226,8 @@ impl IntoResponse for Problem {
         if let Some(seconds) = self.retry_after_s {
             headers.insert(header::RETRY_AFTER, HeaderValue::from(seconds));
         }
+        // For whoever tells it otherwise than as JSON.
+        response.extensions_mut().insert(self);
         response
     }
 }

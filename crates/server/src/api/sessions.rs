@@ -18,7 +18,7 @@ pub struct NewSession {
     /// The parameters of the address that they came by.
     #[schema(schema_with = parameters)]
     pub params: Option<BTreeMap<String, String>>,
-    /// What the browser says about its display; kept as it comes.
+    /// What the browser says about its display; kept as it comes. `language` is the one in which the study is read.
     pub display: Option<Map<String, Value>>,
     /// Whose session it is; only who is signed in may begin one that is no participant's.
     pub kind: Option<SessionKind>,
@@ -52,12 +52,13 @@ worded! {
     }
 }
 
-/// The bytes of one stimulus: what they hash to and where they are.
+/// The bytes of one stimulus as this session gets them: what they hash to and where they are. Other sessions get other bytes and
+/// addresses for the same picture.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct StimulusRef {
     /// SHA-256 of the bytes.
     pub sha256: String,
-    /// Their address on this server.
+    /// Their address on this server; who knows it may have them.
     pub url: String,
 }
 
@@ -96,6 +97,8 @@ pub struct SessionState {
     pub study_id: String,
     /// The study as it was when the session began: its texts and its question stay the session's own.
     pub study: Study,
+    /// The language in which it is taken: the `language` of the display that it began with where the study has it, else the study's own.
+    pub language: String,
     /// How far it is.
     pub status: SessionStatus,
     /// Whether the link named the participant: who comes by it again is the same person.

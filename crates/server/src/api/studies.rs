@@ -3,8 +3,9 @@
 use kelir_report::Participants;
 use kelir_study::schema::{Column, worded};
 use kelir_study::trials::TrialName;
-use kelir_study::{ResponseRules, Texts};
+use kelir_study::{ResponseRules, Texts, Translation};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
 /// What a study says of itself before anybody takes part.
@@ -23,6 +24,10 @@ pub struct Study {
     pub size: [u32; 2],
     /// What participants read.
     pub texts: Texts,
+    /// The language of title, question and texts (BCP 47).
+    pub language: String,
+    /// The same in other languages, by tag.
+    pub translations: BTreeMap<String, Translation>,
     /// How long taking part is said to take, in minutes.
     pub estimated_minutes: u32,
     /// When an input counts as a response.

@@ -1,15 +1,16 @@
 //! Signing researchers in and out.
 
 use super::{Answered, Fresh, no_content};
+use crate::address::ClientAddress;
 use crate::api::{Problem, ProblemCode, SignIn, SignedIn, refusals};
 use crate::app::App;
+use crate::audit::AUDIT;
 use crate::extract::{Body, Researcher, cookie};
 use crate::password::{RESEARCHER, random_token, verify};
-use axum::extract::{ConnectInfo, Extension, State};
+use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use kelir_store::sha256_hex;
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -17,9 +18,11 @@ use std::time::{Duration, Instant};
 pub(crate) const COOKIE: &str = "kelir_session";
 const LASTING: Duration = Duration::from_secs(12 * 3600);
 
-refusals!(NotSignedIn: BadBody, BadJson, NotJson, TooLarge, InvalidField, WrongPassword, TooManyTries);
+refusals!(NotSignedIn: BadBody, BadJson, NotJson, TooLarge, InvalidField, WrongPassword);
 
 /// Sign in: the answer sets the cookie `kelir_session`, for twelve hours.
+///
+/// After wrong passwords an answer takes longer, up to some seconds; nobody is locked out.
 #[utoipa::path(
     post, path = "/api/v1/auth/session", tag = "sign-in", request_body = SignIn,
     responses(
@@ -29,15 +32,10 @@ refusals!(NotSignedIn: BadBody, BadJson, NotJson, TooLarge, InvalidField, WrongP
 )]
 pub(crate) async fn sign_in(
     State(app): State<Arc<App>>,
-    from: Option<Extension<ConnectInfo<SocketAddr>>>,
+    ClientAddress(address): ClientAddress,
     Body(SignIn { password }): Body<SignIn>,
 ) -> Result<Response, Box<Problem>> {
-    let address =
-        from.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |Extension(ConnectInfo(address))| address.ip());
-    app.limiter.attempt(address, Instant::now()).map_err(|seconds| {
-        let detail = format!("Too many tries; please wait {seconds} seconds.");
-        Problem::new(ProblemCode::TooManyTries, detail).retry_after(seconds)
-    })?;
+    tokio::time::sleep(app.limiter.attempt(address, Instant::now())).await;
     let hash = app.store.password_hash(RESEARCHER).await?;
     let hash = hash.ok_or_else(|| Problem::internal("no researcher password is set"))?;
     let permit = app.judging.acquire().await.map_err(Problem::internal)?;
@@ -45,11 +43,14 @@ pub(crate) async fn sign_in(
         tokio::task::spawn_blocking(move || verify(&password, &hash)).await.map_err(Problem::internal)?;
     drop(permit);
     if !right {
+        tracing::warn!(target: AUDIT, "a sign-in failed: wrong password");
+        tokio::time::sleep(app.limiter.refused(Instant::now())).await;
         return Err(Problem::new(ProblemCode::WrongPassword, "That is not the password."));
     }
-    app.limiter.forgive(address);
+    app.limiter.forgive(address, Instant::now());
     let token = random_token();
     app.store.sign_in(RESEARCHER, &sha256_hex(token.as_bytes()), LASTING).await?;
+    tracing::info!(target: AUDIT, who = RESEARCHER, "signed in");
     Ok(with_cookie(&app, &token, LASTING.as_secs()))
 }
 
@@ -77,6 +78,7 @@ pub(crate) async fn sign_out(
 ) -> Result<Response, Box<Problem>> {
     if let Some(token) = cookie(&headers, COOKIE) {
         app.store.sign_out(&sha256_hex(token.as_bytes())).await?;
+        tracing::info!(target: AUDIT, "signed out");
     }
     Ok(with_cookie(&app, "", 0))
 }

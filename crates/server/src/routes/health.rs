@@ -1,7 +1,9 @@
-//! Whether the server is up.
+//! Whether the server is up, and whether what it stores is whole.
 
-use crate::api::{Problem, refusals};
+use super::{Answered, Fresh};
+use crate::api::{IntegrityReport, Problem, refusals};
 use crate::app::App;
+use crate::extract::Researcher;
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -10,8 +12,25 @@ use std::sync::Arc;
 refusals!(Health:);
 
 /// Whether the server answers and its database can be read.
-#[utoipa::path(get, path = "/healthz", tag = "about", responses((status = OK, description = "`ok`", body = String), Health))]
+///
+/// `degraded` means that something stored is damaged and people can take part all the same; researchers are told what.
+#[utoipa::path(
+    get, path = "/healthz", tag = "about",
+    responses((status = OK, description = "`ok` or `degraded`", body = String), Health)
+)]
 pub(crate) async fn get_health(State(app): State<Arc<App>>) -> Result<Response, Box<Problem>> {
     app.store.ping().await?;
-    Ok(([(header::CACHE_CONTROL, "no-store")], "ok\n").into_response())
+    let word = if app.integrity.faults().is_empty() { "ok\n" } else { "degraded\n" };
+    Ok(([(header::CACHE_CONTROL, "no-store")], word).into_response())
+}
+
+refusals!(Integrity: Unauthorized);
+
+/// What is damaged of all that is stored, as of the last look.
+#[utoipa::path(
+    get, path = "/api/v1/integrity", tag = "about", security(("researcher" = [])),
+    responses((status = OK, description = "What was found.", body = IntegrityReport), Integrity)
+)]
+pub(crate) async fn get_integrity(_: Researcher, State(app): State<Arc<App>>) -> Answered<IntegrityReport> {
+    Ok(Fresh(IntegrityReport { faults: app.integrity.faults() }))
 }

@@ -44,6 +44,7 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(sessions::give_consent),
         routes!(sessions::put_answer, sessions::post_answer).layer(DefaultBodyLimit::max(TRIAL_LIMIT)),
         routes!(sessions::complete_session),
+        routes!(stimuli::get_session_stimulus),
         routes!(links::get_visit),
         routes!(links::make_link),
         routes!(previews::get_preview),
@@ -73,6 +74,7 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(document::get_docs),
         routes!(document::get_docs_style),
         routes!(health::get_health),
+        routes!(health::get_integrity),
     ]
 }
 
@@ -83,21 +85,28 @@ fn documented() -> OpenApiRouter<Arc<App>> {
 
 pub(crate) fn router(app: Arc<App>) -> Router {
     // Pictures are compressed as they are; the default predicate leaves them alone, octets too.
-    let compressible = DefaultPredicate::new().and(NotForContentType::const_new("application/octet-stream"));
+    let compressible = DefaultPredicate::new()
+        .and(NotForContentType::const_new("application/octet-stream"))
+        .and(NotForContentType::const_new(kelir_store::PACKED));
     let (documented, _) = documented().split_for_parts();
     documented
         // What pages loaded before an update still ask for.
         .route("/api/v1/sessions/{session}/complete", post(sessions::complete_session))
         .route("/", get(pages::get_root))
         .route("/study/{study}", get(pages::get_participant))
+        .route("/study/{study}/", get(pages::without_slash))
         .route("/console", get(pages::get_console))
+        .route("/console/", get(pages::without_slash))
         .route("/console/{*path}", get(pages::get_console))
         .route("/assets/{*path}", get(pages::get_asset))
         .fallback(not_found)
         .method_not_allowed_fallback(method_not_allowed)
         .layer(DefaultBodyLimit::max(BODY_LIMIT))
+        .layer(middleware::from_fn(headers::same_site))
+        .layer(middleware::from_fn(headers::for_people))
         .layer(CompressionLayer::new().compress_when(compressible))
         .layer(middleware::from_fn(headers::secure))
+        .layer(middleware::from_fn(headers::note_route))
         .with_state(app)
 }
 

@@ -5,7 +5,7 @@ use crate::app::App;
 use crate::extract::Parameters;
 use crate::web;
 use axum::extract::State;
-use axum::http::{StatusCode, header};
+use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Redirect, Response};
 use std::sync::Arc;
 
@@ -23,8 +23,15 @@ pub(crate) async fn get_participant(
     State(app): State<Arc<App>>,
     Parameters(study): Parameters<String>,
 ) -> Result<Response, Box<Problem>> {
-    let status = if app.studies.contains_key(&study) { StatusCode::OK } else { StatusCode::NOT_FOUND };
+    let known = app.studies.contains_key(&study) || app.broken.contains_key(&study);
+    let status = if known { StatusCode::OK } else { StatusCode::NOT_FOUND };
     page(status, web::PARTICIPANT)
+}
+
+/// The same address without its last slash, the parameters kept: a panel's are in them.
+pub(crate) async fn without_slash(uri: Uri) -> Redirect {
+    let query = uri.query().map(|query| format!("?{query}")).unwrap_or_default();
+    Redirect::permanent(&format!("{}{query}", uri.path().trim_end_matches('/')))
 }
 
 /// The researcher's page, at any of its addresses.

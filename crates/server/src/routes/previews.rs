@@ -1,6 +1,6 @@
 //! Looking at a study as participants will: the same answers as a session's, and nothing is stored.
 
-use super::sessions::{TrialPath, next_of, planned, trial_of};
+use super::sessions::{TrialPath, next_of, planned, trials_of};
 use super::studies::told;
 use super::{Answered, Fresh};
 use crate::api::{
@@ -10,10 +10,11 @@ use crate::api::{
 use crate::app::{App, Begun};
 use crate::extract::{Object, Parameters, Query, Token};
 use crate::password::random_token;
+use crate::presenting::Whose;
 use crate::previews::Preview;
 use axum::extract::State;
-use kelir_store::sha256_hex;
-use kelir_study::TrialPlan;
+use kelir_store::{PlannedTrial, sha256_hex};
+use kelir_study::{StudyDefinition, TrialPlan};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,7 +28,7 @@ pub(crate) struct PreviewPath {
 }
 
 /// Begins a preview of a study as it is served now.
-pub(super) fn begin(app: &App, begun: Begun) -> Result<CreatedSession, Box<Problem>> {
+pub(super) async fn begin(app: &App, begun: Begun, language: Option<&str>) -> Result<CreatedSession, Box<Problem>> {
     // Each preview has a plan of its own, so that restarting shows other orders and sides.
     let slot =
         u32::from_le_bytes(uuid::Uuid::new_v4().into_bytes()[..4].try_into().unwrap_or_default()) >> 12;
@@ -36,6 +37,7 @@ pub(super) fn begin(app: &App, begun: Begun) -> Result<CreatedSession, Box<Probl
     let preview = Preview {
         token_hash: sha256_hex(token.as_bytes()),
         trials: planned(&begun.stimuli, trials)?,
+        language: begun.study.language_for(language).to_owned(),
         begun,
         slot,
         more,
@@ -47,7 +49,7 @@ pub(super) fn begin(app: &App, begun: Begun) -> Result<CreatedSession, Box<Probl
     let id = app.previews.begin(preview);
     let state = app.previews.with(&id, &token_hash, |preview| state_of(&id, preview));
     let state = state.ok_or_else(|| Problem::internal("a preview is gone"))?;
-    Ok(CreatedSession { state, token })
+    Ok(CreatedSession { state: state.told(app, &token_hash).await?, token })
 }
 
 fn gone() -> Box<Problem> {
@@ -69,7 +71,9 @@ pub(crate) async fn get_preview(
     Token(token): Token,
     Parameters(PreviewPath { session }): Parameters<PreviewPath>,
 ) -> Answered<SessionState> {
-    app.previews.with(&session, &token, |preview| Fresh(state_of(&session, preview))).ok_or_else(gone)
+    let state =
+        app.previews.with(&session, &token, |preview| state_of(&session, preview)).ok_or_else(gone)?;
+    Ok(Fresh(state.told(&app, &token).await?))
 }
 
 /// Give consent in a preview.
@@ -84,9 +88,10 @@ pub(crate) async fn consent_preview(
 ) -> Answered<SessionState> {
     let consent = |preview: &mut Preview| {
         preview.consented = true;
-        Fresh(state_of(&session, preview))
+        state_of(&session, preview)
     };
-    app.previews.with(&session, &token, consent).ok_or_else(gone)
+    let state = app.previews.with(&session, &token, consent).ok_or_else(gone)?;
+    Ok(Fresh(state.told(&app, &token).await?))
 }
 
 refusals!(NotTaken: Unauthorized, NotFound, InvalidParameter, BadBody, BadJson, NotJson, TooLarge, InvalidField, NoConsent);
@@ -116,15 +121,16 @@ pub(crate) async fn answer_preview(
         preview.answer(trial.trial_index, answer, next_of)?;
         let answered: Vec<u32> = preview.answers.keys().copied().collect();
         let from = known.known.unwrap_or(usize::MAX);
-        let told = preview.trials.iter().skip(from);
-        Ok(Fresh(Acknowledgement {
-            acknowledged: true,
-            next_trial: preview.missing().first().copied(),
-            more: preview.more,
-            trials: told.map(|planned| trial_of(&preview.begun.study, planned, &answered)).collect(),
-        }))
+        let next_trial = preview.missing().first().copied();
+        let ack = Acknowledgement { acknowledged: true, next_trial, more: preview.more, trials: Vec::new() };
+        let new: Vec<PlannedTrial> = preview.trials.iter().skip(from).cloned().collect();
+        Ok((ack, new, answered, preview.begun.study.clone()))
     };
-    app.previews.with(&session, &token, answer).unwrap_or_else(|| Err(gone()))
+    let taken = app.previews.with(&session, &token, answer).unwrap_or_else(|| Err(gone()));
+    let (mut ack, new, answered, study) = taken?;
+    let whose = Whose { session_id: &session, token_hash: &token };
+    ack.trials = trials_of(&app, whose, &study, &new, &answered).await?;
+    Ok(Fresh(ack))
 }
 
 refusals!(NotOver: Unauthorized, NotFound, Incomplete);
@@ -157,7 +163,23 @@ fn end() -> Completion {
     Completion { completion_code: "PREVIEW".to_owned(), redirect: None }
 }
 
-fn state_of(id: &str, preview: &Preview) -> SessionState {
+/// Where a preview stands, before its page is told what its trials show.
+struct Untold {
+    state: SessionState,
+    trials: Vec<PlannedTrial>,
+    answered: Vec<u32>,
+    study: Arc<StudyDefinition>,
+}
+
+impl Untold {
+    async fn told(self, app: &App, token_hash: &str) -> Result<SessionState, Box<Problem>> {
+        let whose = Whose { session_id: &self.state.session_id, token_hash };
+        let trials = trials_of(app, whose, &self.study, &self.trials, &self.answered).await?;
+        Ok(SessionState { trials, ..self.state })
+    }
+}
+
+fn state_of(id: &str, preview: &Preview) -> Untold {
     let study = &preview.begun.study;
     let answered: Vec<u32> = preview.answers.keys().copied().collect();
     let status = match (preview.is_finished, preview.consented) {
@@ -165,18 +187,21 @@ fn state_of(id: &str, preview: &Preview) -> SessionState {
         (false, true) => SessionStatus::InProgress,
         (false, false) => SessionStatus::Consent,
     };
-    SessionState {
+    let state = SessionState {
         session_id: id.to_owned(),
         study_id: study.id.clone(),
         study: told(study),
+        language: preview.language.clone(),
         status,
         named: false,
+        language: study.language.clone(),
         consented: preview.consented,
         more: preview.more,
         most_trials: if preview.more { study.most_trials() } else { preview.trials.len() },
         next_trial: preview.missing().first().copied(),
-        trials: preview.trials.iter().map(|planned| trial_of(study, planned, &answered)).collect(),
+        trials: Vec::new(),
         completion_code: preview.is_finished.then(|| end().completion_code),
         redirect: None,
-    }
+    };
+    Untold { state, trials: preview.trials.clone(), answered, study: preview.begun.study.clone() }
 }

@@ -4,13 +4,14 @@ use super::studies::{StudyPath, told};
 use super::{Answered, Fresh, links, previews};
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
-    SessionState, SessionStatus, StimulusRef, Trial, refusals,
+    SessionState, SessionStatus, Trial, refusals,
 };
 use crate::app::App;
 use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
 use crate::links::{Visit, is_of_link};
 use crate::making::StimulusMap;
 use crate::password::{random_code, random_token};
+use crate::presenting::Whose;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{
@@ -66,7 +67,8 @@ pub(crate) async fn create_session(
     let visit = links::visit(&app, &loaded.study.id, &pairs, researcher.is_some())?;
     if visit == Visit::Preview {
         let begun = crate::app::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
-        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun)?)));
+        let language = new.display.as_ref().and_then(|display| display.get("language")?.as_str());
+        return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun, language).await?)));
     }
     let is_pilot = visit == Visit::Pilot;
     let kind = if is_pilot { SessionKind::Pilot } else { new.kind.unwrap_or_default() };
@@ -162,7 +164,9 @@ pub(crate) async fn give_consent(
     Participant(session): Participant,
     State(app): State<Arc<App>>,
 ) -> Answered<SessionState> {
-    let text = app.begun(&session).await?.study.texts.consent.join("\n\n");
+    let study = app.begun(&session).await?.study;
+    // The text that was read, in the language in which it was.
+    let text = study.texts_in(language(&study, &session)).consent.join("\n\n");
     app.store.consent(&session.session_id, &sha256_hex(text.as_bytes())).await?;
     let session = app.store.session(&session.session_id).await?;
     let session = session.ok_or_else(|| Problem::internal("a session is gone"))?;
@@ -219,7 +223,7 @@ pub(crate) async fn put_answer(
         let answered = app.store.answered(&session.session_id).await?;
         let from = u32::try_from(known).unwrap_or(u32::MAX);
         let decided = app.store.trials_from(&session.session_id, from).await?;
-        trials = decided.iter().map(|planned| trial_of(&begun.study, planned, &answered)).collect();
+        trials = trials_of(&app, Whose::of(&session), &begun.study, &decided, &answered).await?;
     }
     let next_trial = app.store.next_trial(&session.session_id).await?;
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
@@ -294,7 +298,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     let study = app.begun(session).await?.study;
     let answered = app.store.answered(&session.session_id).await?;
     let planned = app.store.trials(&session.session_id).await?;
-    let trials: Vec<Trial> = planned.iter().map(|planned| trial_of(&study, planned, &answered)).collect();
+    let trials = trials_of(app, Whose::of(session), &study, &planned, &answered).await?;
     let status = match (&session.completed_at, &session.consented_at) {
         (Some(_), _) => SessionStatus::Completed,
         (None, Some(_)) => SessionStatus::InProgress,
@@ -306,6 +310,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         session_id: session.session_id.clone(),
         study_id: session.study_id.clone(),
         study: told(&study),
+        language: language(&study, session).to_owned(),
         status,
         named: session.subject_id != session.session_id,
         consented: session.consented_at.is_some(),
@@ -318,23 +323,36 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
     })
 }
 
-pub(super) fn trial_of(study: &StudyDefinition, planned: &PlannedTrial, answered: &[u32]) -> Trial {
-    let trial = &planned.trial;
-    let stimulus =
-        |sha256: &str| StimulusRef { sha256: sha256.to_owned(), url: format!("/stimuli/{sha256}") };
+/// The language in which a session is taken.
+fn language<'a>(study: &'a StudyDefinition, session: &'a Session) -> &'a str {
+    study.language_for(session.display.get("language").and_then(serde_json::Value::as_str))
+}
+
+pub(super) async fn trials_of(
+    app: &App,
+    whose: Whose<'_>,
+    study: &StudyDefinition,
+    planned: &[PlannedTrial],
+    answered: &[u32],
+) -> Result<Vec<Trial>, Box<Problem>> {
     let [width, height] = study.size;
-    Trial {
-        trial_index: trial.trial_index,
-        trial: trial.trial.rules().name(),
-        block_index: trial.block_index,
-        item_index: trial.item_index,
-        kind: trial.kind,
-        shown: planned.stimuli.iter().map(|(role, hashes)| (*role, stimulus(&hashes.sha256))).collect(),
-        settings: trial.trial.settings(),
-        width,
-        height,
-        answered: answered.contains(&trial.trial_index),
+    let mut trials = Vec::with_capacity(planned.len());
+    for planned in planned {
+        let trial = &planned.trial;
+        trials.push(Trial {
+            trial_index: trial.trial_index,
+            trial: trial.trial.rules().name(),
+            block_index: trial.block_index,
+            item_index: trial.item_index,
+            kind: trial.kind,
+            shown: app.presenter.tell(&app.store, whose, planned).await?,
+            settings: trial.trial.settings(),
+            width,
+            height,
+            answered: answered.contains(&trial.trial_index),
+        });
     }
+    Ok(trials)
 }
 
 fn completion(study: &StudyDefinition, session: &Session, completion_code: String) -> Completion {

@@ -2,12 +2,14 @@
 
 use super::{Answered, Fresh};
 use crate::api::{ListQuery, Progress, Study, StudyList, StudyStatus, StudySummary, VersionList, refusals};
-use crate::app::{App, LoadedStudy, Stimuli};
+use crate::app::{App, BrokenStudy, LoadedStudy, Stimuli};
 use crate::extract::{Parameters, Query, Researcher};
 use axum::extract::State;
+use kelir_report::Participants;
 use kelir_store::StoreError;
 use kelir_study::StudyDefinition;
 use serde::Deserialize;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use utoipa::IntoParams;
 
@@ -43,6 +45,8 @@ pub(super) fn told(study: &StudyDefinition) -> Study {
         surround: study.surround,
         size: study.size,
         texts: study.texts.clone(),
+        language: study.language.clone(),
+        translations: study.translations.clone(),
         estimated_minutes: study.estimated_minutes,
         response: study.response_rules(),
         per_visit: study.session.per_visit,
@@ -62,13 +66,32 @@ pub(crate) async fn list_studies(
     State(app): State<Arc<App>>,
     Query(query): Query<ListQuery>,
 ) -> Answered<StudyList> {
-    let ids: Vec<&str> = app.studies.keys().map(String::as_str).collect();
+    let ids: BTreeSet<&str> = app.studies.keys().chain(app.broken.keys()).map(String::as_str).collect();
+    let ids: Vec<&str> = ids.into_iter().collect();
     let page = query.page(&ids)?;
     let mut items = Vec::with_capacity(page.items.len());
     for id in page.items {
-        items.push(summary(&app, app.study(id)?).await?);
+        items.push(match app.broken.get(id) {
+            Some(broken) => of_broken(broken),
+            None => summary(&app, app.study(id)?).await?,
+        });
     }
     Ok(Fresh(StudyList { items, next_cursor: page.next_cursor }))
+}
+
+/// A study whose file is wrong, as the list has it.
+fn of_broken(broken: &BrokenStudy) -> StudySummary {
+    StudySummary {
+        id: broken.id.clone(),
+        title: broken.id.clone(),
+        version: None,
+        file_hash: broken.file_hash.clone(),
+        status: StudyStatus::Failed,
+        progress: None,
+        reason: Some(broken.reason.clone()),
+        most_trials: 0,
+        participants: Participants::default(),
+    }
 }
 
 async fn summary(app: &App, loaded: &LoadedStudy) -> Result<StudySummary, StoreError> {

@@ -3,6 +3,7 @@
 use super::{Answered, Fresh};
 use crate::api::{Codebook, Pooling, Problem, refusals, version_ref};
 use crate::app::App;
+use crate::audit::AUDIT;
 use crate::events::events_table;
 use crate::export::{codebook_csv, responses_csv, spreadsheet};
 use crate::extract::{Parameters, Query, Researcher};
@@ -280,6 +281,7 @@ fn csv(name: &str, text: String) -> Response {
 
 /// A file to keep, which no browser opens in the console's own origin.
 fn download(media_type: &str, name: &str, content: impl Into<Body>) -> Response {
+    tracing::info!(target: AUDIT, file = name, "a file was taken");
     let headers = [
         (header::CONTENT_TYPE, media_type.to_owned()),
         (header::CONTENT_DISPOSITION, format!("attachment; filename=\"{name}\"")),

@@ -4,7 +4,7 @@ use crate::placeholder::Placeholder;
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
-use kelir_server::{Maker, Server, ServerConfig};
+use kelir_server::{Maker, Server, ServerConfig, TrustedProxies};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -142,6 +142,7 @@ pub fn config(folder: &Path, maker: Arc<dyn Maker>) -> ServerConfig {
         listen: ([127, 0, 0, 1], 0).into(),
         password: Some(PASSWORD.to_owned()),
         secure_cookies: false,
+        trusted_proxies: TrustedProxies::default(),
         maker,
         progress: Arc::new(|_| {}),
     }

@@ -3,10 +3,12 @@
 
 mod bad_requests;
 mod client;
+mod front;
 mod making;
 mod openapi;
 mod persons;
 mod placeholder;
+mod presenting;
 mod research;
 mod taking_part;
 mod versions;

@@ -3,13 +3,15 @@
 use kelir_server::{Library, Made, Maker, Task};
 use kelir_study::Kind;
 use serde_json::json;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Draws discs; counts how often it drew.
 #[derive(Debug, Default)]
 pub struct Placeholder {
     /// Stimuli drawn so far.
     pub drawn: AtomicUsize,
+    /// Whether it draws otherwise than before.
+    pub disguised: AtomicBool,
 }
 
 impl Maker for Placeholder {
@@ -25,7 +27,7 @@ impl Maker for Placeholder {
     ) -> Result<Made, String> {
         self.drawn.fetch_add(1, Ordering::SeqCst);
         let seed = task.pair.id.bytes().fold(7u32, |h, b| h.wrapping_mul(31).wrapping_add(u32::from(b)));
-        let rough = task.name != task.block.target;
+        let rough = (task.name != task.block.target) != self.disguised.load(Ordering::SeqCst);
         let provenance = json!({ "source": "placeholder", "condition": task.name });
         let png = "image/png".to_owned();
         match task.block.kind {

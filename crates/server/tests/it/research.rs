@@ -1,8 +1,13 @@
-use crate::client::{Client, PASSWORD, config};
+use crate::client::{Client, PASSWORD, body_of, config, folder, send};
+use crate::placeholder::Placeholder;
 use axum::body::Body;
+use axum::extract::ConnectInfo;
 use axum::http::{Request, StatusCode, header};
-use kelir_server::{Server, VersionRef, With};
+use kelir_server::{Server, TrustedProxies, VersionRef, With};
 use serde_json::{Value, json};
+use std::net::SocketAddr;
+use std::sync::Arc;
+use tokio::task::JoinSet;
 
 #[tokio::test(flavor = "multi_thread")]
 async fn signing_in_and_out() {
@@ -28,19 +33,30 @@ async fn signing_in_and_out() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn guessing_is_slowed_down() {
-    let client = Client::ready().await;
-    let mut statuses = Vec::new();
-    for guess in 0..9 {
-        let answer = client
-            .call("POST", "/api/v1/auth/session", "", &json!({ "password": format!("guess {guess}") }))
-            .await;
-        statuses.push(answer.status.as_u16());
+async fn wrong_passwords_lock_nobody_out_behind_a_proxy_or_not() {
+    let folder = folder();
+    let mut config = config(folder.path(), Arc::new(Placeholder::default()));
+    config.trusted_proxies = TrustedProxies::parse(["10.0.0.0/8"]).unwrap();
+    let router = Server::open(&config).await.unwrap().router();
+    let sign_in = |password: &str, from: &str| {
+        let body = Body::from(json!({ "password": password }).to_string());
+        let request = Request::post("/api/v1/auth/session").header(header::CONTENT_TYPE, "application/json");
+        let request = request.header("X-Forwarded-For", format!("203.0.113.250, {from}"));
+        let proxy = ConnectInfo(SocketAddr::from(([10, 0, 0, 1], 4711)));
+        send(router.clone(), request.extension(proxy).body(body).unwrap())
+    };
+    let mut guesses = JoinSet::new();
+    (0..9).for_each(|guess| drop(guesses.spawn(sign_in(&format!("guess {guess}"), "198.51.100.7"))));
+    assert_eq!(
+        sign_in(PASSWORD, "198.51.100.8").await.status,
+        StatusCode::NO_CONTENT,
+        "another client of the proxy"
+    );
+    for guess in guesses.join_all().await {
+        assert_eq!(guess.json()["code"], "wrong_password");
     }
-    assert_eq!(statuses, [401, 401, 401, 401, 401, 401, 401, 401, 429]);
-    let right = client.call("POST", "/api/v1/auth/session", "", &json!({ "password": PASSWORD })).await;
-    assert_eq!(right.status, StatusCode::TOO_MANY_REQUESTS);
-    assert!(right.header("retry-after").parse::<u64>().unwrap() > 0);
+    let right = sign_in(PASSWORD, "198.51.100.7").await;
+    assert_eq!(right.status, StatusCode::NO_CONTENT, "the right password gets in: {}", right.text());
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -141,6 +157,38 @@ async fn the_export_has_one_row_a_trial_and_a_codebook_for_every_column() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn the_table_of_events_has_one_row_an_event_and_a_codebook_for_every_column() {
+    let client = Client::ready().await;
+    let (path, token, _) = client.join(json!({ "PROLIFIC_PID": "5f0a" })).await;
+    let mut body = body_of("left");
+    body["events"] = json!([
+        { "event": "blur", "time_ms": 12.5 },
+        { "event": "ignored", "time_ms": -180, "reason": "double", "input": "mouse", "choice": "left" },
+    ]);
+    let first = client.call("PUT", &format!("{path}/trials/0"), &token, &body).await;
+    assert_eq!(first.status, StatusCode::OK, "{}", first.text());
+    // A page of before has no log.
+    assert_eq!(client.choose(&path, &token, 1, "right").await.status, StatusCode::OK);
+    let cookie = client.sign_in().await;
+    let table = |name: &str| format!("/api/v1/studies/shadow-puppets/versions/current/{name}");
+    let answer = client.research(&cookie, &table("events.csv")).await;
+    assert_eq!(answer.header("content-type"), "text/csv; charset=utf-8");
+    let text = answer.text();
+    let lines: Vec<Vec<&str>> = text.trim_end().split("\r\n").map(|line| line.split(',').collect()).collect();
+    let codebook = client.research(&cookie, &table("events-codebook.csv")).await.text();
+    let described: Vec<&str> =
+        codebook.trim_end().split("\r\n").skip(1).map(|l| l.split(',').next().unwrap()).collect();
+    assert_eq!(lines[0], described);
+    let cell = |row: usize, name: &str| lines[row][described.iter().position(|d| *d == name).unwrap()];
+    assert_eq!(lines.len(), 3);
+    let cells = |row| {
+        ["subject_id", "trial_index", "event_index", "event", "time_ms", "reason"].map(|name| cell(row, name))
+    };
+    assert_eq!(cells(1), ["5f0a", "0", "0", "blur", "12.5", ""]);
+    assert_eq!(cells(2), ["5f0a", "0", "1", "ignored", "-180", "double"]);
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn a_started_server_listens_answers_and_stops() {
     let client = Client::unready().await;
     let handle = Server::start(config(client.folder.path(), client.drawer.clone())).await.unwrap();
@@ -175,11 +223,11 @@ async fn a_leaked_database_holds_no_secret() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn the_screened_are_left_out_named_and_shown_apart() {
-    let folder = crate::client::folder();
+    let folder = folder();
     let rules = "[screening]\nmin_rt_ms = 300\nincomplete = true\n[texts]";
     let study = crate::client::STUDY.replace("[texts]", rules);
     std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
-    let drawer = std::sync::Arc::<crate::placeholder::Placeholder>::default();
+    let drawer = Arc::<Placeholder>::default();
     let server = Server::open(&config(folder.path(), drawer.clone())).await.unwrap();
     let client = Client { server, folder, drawer };
     client.server.make_stimuli(&|_| {}).await.unwrap();
@@ -196,7 +244,7 @@ async fn the_screened_are_left_out_named_and_shown_apart() {
     for (rts, choices) in [([900.0, 299.0, 900.0], 3), ([900.0, 900.0, 900.0], 2)] {
         let (path, token, _) = client.join(json!({})).await;
         for (trial, rt) in rts.iter().enumerate().take(choices) {
-            let mut body = crate::client::body_of("left");
+            let mut body = body_of("left");
             body["rt"] = json!(rt);
             let answer = client.call("PUT", &format!("{path}/trials/{trial}"), &token, &body).await;
             assert_eq!(answer.status, StatusCode::OK);
@@ -288,11 +336,11 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_hostile_study_file_writes_no_markup_into_its_report() {
-    let folder = crate::client::folder();
+    let folder = folder();
     let study =
         crate::client::STUDY.replace("Small", "<script>alert(1)</script>").replace("Which?", "<img src=x>");
     std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
-    let drawer = std::sync::Arc::<crate::placeholder::Placeholder>::default();
+    let drawer = Arc::<Placeholder>::default();
     let server = Server::open(&config(folder.path(), drawer.clone())).await.unwrap();
     server.make_stimuli(&|_| {}).await.unwrap();
     let client = Client { server, folder, drawer };

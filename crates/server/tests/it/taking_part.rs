@@ -150,29 +150,6 @@ async fn nothing_is_stored_before_consent() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn stimuli_are_immutable_and_known_by_their_hash() {
-    let client = Client::ready().await;
-    let (_, _, state) = client.join(json!({})).await;
-    for side in ["left", "right"] {
-        let still = client.get(state["trials"][0]["shown"][side]["url"].as_str().unwrap()).await;
-        assert_eq!((still.status, still.header("content-type")), (StatusCode::OK, "image/png"));
-        assert!(still.header("cache-control").contains("immutable"));
-        assert_eq!(
-            kelir_store::sha256_hex(&still.bytes),
-            state["trials"][0]["shown"][side]["sha256"].as_str().unwrap()
-        );
-        let request = axum::http::Request::get(state["trials"][0]["shown"][side]["url"].as_str().unwrap())
-            .header("if-none-match", still.header("etag"))
-            .body(axum::body::Body::empty());
-        assert_eq!(client.send(request.unwrap()).await.status, StatusCode::NOT_MODIFIED);
-    }
-    let manifest = client.get(state["trials"][2]["shown"]["left"]["url"].as_str().unwrap()).await;
-    assert_eq!(manifest.header("content-type"), "application/vnd.kelir.animation+json");
-    let frame = manifest.json()["frames"][0].as_str().unwrap().to_owned();
-    assert_eq!(client.get(&format!("/stimuli/{frame}")).await.header("content-type"), "image/png");
-}
-
-#[tokio::test(flavor = "multi_thread")]
 async fn completed_participants_balance_the_sides_and_a_freed_slot_is_taken_again() {
     let client = Client::ready().await;
     for who in 0..4 {

@@ -41,8 +41,9 @@ async fn take(store: &Store, people: usize) {
             idle: Duration::from_secs(60),
         };
         let hashes = crate::StimulusHashes { sha256: "s".to_owned(), pixels_sha256: "p".to_owned() };
-        let plan = |slot| {
-            let plan = TrialPlan::for_slot(&study, slot);
+        let planned = study.clone();
+        let plan = move |slot| {
+            let plan = TrialPlan::for_slot(&planned, slot);
             let stimuli =
                 |trial: &kelir_study::Trial| trial.shown.keys().map(|role| (*role, hashes.clone())).collect();
             let filled = |trial| PlannedTrial { stimuli: stimuli(&trial), trial };
@@ -83,7 +84,7 @@ async fn as_rows_say(store: &Store, study: &StudyDefinition, versions: &[String]
             session_id: &row.session_id,
             trial_index: row.trial_index,
             observation,
-            received_us: crate::clock::micros(&row.received_at),
+            received_us: micros(&row.received_at),
         });
     }
     assert_eq!(answers.len(), rows.len());

@@ -70,6 +70,8 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
         percent_complete: 100.0 / 3.0,
         slot: 0,
         plan_seed: "0".to_owned(),
+        judged: 1,
+        reject_reason: None,
     };
     let rows = Rows::default();
     for trial in TrialPlan::for_slot(&study, 0).trials {

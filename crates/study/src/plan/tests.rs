@@ -10,6 +10,8 @@ fn study(seed: u64, items: &[usize]) -> StudyDefinition {
     let condition = Condition::Rendered { technique: "pa".to_owned(), knobs: BTreeMap::new(), camera: None };
     let texts = vec!["…".to_owned()];
     StudyDefinition {
+        language: "en".to_owned(),
+        translations: BTreeMap::new(),
         id: "test".to_owned(),
         title: "Test".to_owned(),
         question: "Which?".to_owned(),

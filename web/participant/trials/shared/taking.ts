@@ -8,15 +8,17 @@ import { hiddenTime } from "./hidden.ts";
 import { offered } from "../../inputs/offered.ts";
 
 export type Geometry = Schemas["Geometry"];
+/** What can be chosen: the role of a stimulus. */
+type Chosen = Schemas["Role"];
 
-export interface Choice<Role extends string> {
+export interface Choice<Role extends Chosen> {
   role: Role;
   input: Given["input"];
   /** `performance.now()` of the hand's own movement, ms. */
   at: number;
 }
 
-export interface Options<Role extends string> {
+export interface Options<Role extends Chosen> {
   root: HTMLElement;
   buttons: Record<Role, HTMLButtonElement>;
   /** `KeyboardEvent.key` → answer, as it is now. */
@@ -28,7 +30,7 @@ export interface Options<Role extends string> {
   simulated: boolean;
 }
 
-export class Taking<Role extends string> {
+export class Taking<Role extends Chosen> {
   readonly #options: Options<Role>;
   readonly #log = eventLog();
   readonly #listening = new AbortController();

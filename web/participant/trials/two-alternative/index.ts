@@ -8,7 +8,7 @@ import plugin from "./plugin.ts";
 const how = { touch: "how-pair-touch", click: "how-pair-click" } as const;
 
 /** The keys lie as the pictures would stand in the window as it is. */
-function legend({ question, size: [width, height] }: Study): Legend {
+function legend({ question, size: [width = 0, height = 0] }: Study): Legend {
   const stacked = fitPair({ width, height, ...roomFor(question) }).arrangement === "stack";
   const [first, second] = stacked ? ([{ keys: ["↑"], label: "key-upper" }, { keys: ["↓"], label: "key-lower" }] as const) : ([{ keys: ["←"], label: "key-left" }, { keys: ["→"], label: "key-right" }] as const);
   return { title: "kind-two-alternative", how, stacked, answers: [first, second] };

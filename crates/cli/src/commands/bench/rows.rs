@@ -2,13 +2,15 @@
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use kelir_render::encode;
-use kelir_server::{Library, Made, Maker, Selection, Server, ServerConfig, Task, VersionRef, With, results};
+use kelir_server::{
+    Library, Made, Maker, Selection, Server, ServerConfig, Task, TrustedProxies, VersionRef, With, results,
+};
 use kelir_stats::pairwise::Model;
 use kelir_stats::random::Random;
 use kelir_store::{
@@ -322,6 +324,7 @@ async fn over_http(data: &Path, served: &Served) -> Result<(f64, f64)> {
         listen: SocketAddr::from(([127, 0, 0, 1], 0)),
         password: Some(PASSWORD.to_owned()),
         secure_cookies: false,
+        trusted_proxies: TrustedProxies::default(),
         maker: Arc::new(Nobody),
         progress: Arc::new(|_| {}),
     })

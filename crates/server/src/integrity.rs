@@ -1,0 +1,159 @@
+//! Whether what is stored is still what was stored: looked at after the start and every hour, mended where that can be done.
+//!
+//! Answers are taken whatever is found here. A study whose stimuli are damaged for good pauses: nobody begins it until they are back.
+
+use crate::app::{App, LoadedStudy, Served, Stimuli};
+use crate::audit::AUDIT;
+use crate::making;
+use kelir_store::{ANIMATION, StoreError};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use tokio::sync::Notify;
+
+/// Between two looks.
+const EVERY: Duration = Duration::from_secs(3600);
+/// At least so long between two looks, however often somebody asks for one.
+const REST: Duration = Duration::from_secs(30);
+
+/// What the last look found.
+#[derive(Debug, Default)]
+pub(crate) struct Integrity {
+    faults: Mutex<Vec<String>>,
+    /// Studies that paused, with what they show.
+    paused: Mutex<BTreeMap<String, Arc<Served>>>,
+    asked: Notify,
+}
+
+impl Integrity {
+    /// What is wrong, in sentences; nothing where all is well.
+    pub(crate) fn faults(&self) -> Vec<String> {
+        self.faults.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Something was missed or damaged: look soon.
+    pub(crate) fn ask(&self) {
+        self.asked.notify_one();
+    }
+}
+
+/// Looks again and again, for as long as the server runs.
+pub(crate) async fn watch(app: Arc<App>) {
+    loop {
+        look(&app).await;
+        tokio::time::sleep(REST).await;
+        tokio::select! {
+            () = tokio::time::sleep(EVERY) => {}
+            () = app.integrity.asked.notified() => {}
+        }
+    }
+}
+
+/// Looks at everything once, and mends what can be mended.
+pub(crate) async fn look(app: &App) {
+    let mut faults = of_database(app).await;
+    for loaded in app.studies.values() {
+        faults.extend(of_chain(app, &loaded.study.id).await);
+        faults.extend(of_stimuli(app, loaded).await);
+    }
+    let before = {
+        let mut known = app.integrity.faults.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::replace(&mut *known, faults.clone())
+    };
+    for fault in faults.iter().filter(|fault| !before.contains(fault)) {
+        tracing::error!(target: AUDIT, "integrity: {fault}");
+    }
+    if faults.is_empty() && !before.is_empty() {
+        tracing::info!(target: AUDIT, "integrity: all is well again");
+    }
+}
+
+async fn of_database(app: &App) -> Vec<String> {
+    match app.store.quick_check().await {
+        Ok(faults) => faults.into_iter().map(|fault| format!("The database is damaged: {fault}")).collect(),
+        Err(error) => vec![format!("The database cannot be checked: {error}")],
+    }
+}
+
+async fn of_chain(app: &App, study: &str) -> Option<String> {
+    match app.store.verify_chain(study).await {
+        Ok(report) => {
+            let unexplained = report.unexplained().count();
+            let rows = if unexplained == 1 { "1 row".to_owned() } else { format!("{unexplained} rows") };
+            (unexplained > 0).then(|| {
+                format!("Study {study}: {rows} of its answers differ from what was written; kelir chain check {study} names them")
+            })
+        }
+        Err(error) => Some(format!("Study {study}: its answers cannot be checked: {error}")),
+    }
+}
+
+/// What is wrong with a study's stimuli after mending. A study pauses where something is, and goes on once it is not.
+async fn of_stimuli(app: &App, loaded: &LoadedStudy) -> Option<String> {
+    let id = &loaded.study.id;
+    let paused = || app.integrity.paused.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = paused().get(id).cloned();
+    let (served, was_paused) = match (loaded.stimuli(), known) {
+        (Stimuli::Ready(served), _) => (served, false),
+        (Stimuli::Failed(_), Some(served)) => (served, true),
+        // Being made, or never made: that has its own reason.
+        _ => return None,
+    };
+    match mended(app, loaded, &served).await {
+        Ok(count) => {
+            if count > 0 {
+                tracing::warn!(target: AUDIT, study = id, "integrity: {count} damaged stimuli were made again");
+            }
+            if was_paused {
+                paused().remove(id);
+                loaded.set_stimuli(Stimuli::Ready(served));
+            }
+            None
+        }
+        Err(reason) => {
+            let reason = format!("it is paused, because stimuli are damaged: {reason}");
+            loaded.set_stimuli(Stimuli::Failed(reason.clone()));
+            paused().insert(id.clone(), served);
+            Some(format!("Study {id}: {reason}"))
+        }
+    }
+}
+
+/// How many of a study's stimuli had to be made again, to the same bytes.
+async fn mended(app: &App, loaded: &LoadedStudy, served: &Served) -> Result<usize, String> {
+    let mut damaged = Vec::new();
+    for stimulus in served.stimuli.all() {
+        if !is_whole(app, &stimulus.sha256).await.map_err(|error| error.to_string())? {
+            damaged.push(stimulus);
+        }
+    }
+    if damaged.is_empty() {
+        return Ok(0);
+    }
+    let made = making::make(&loaded.study, &app.store, &app.library, &app.maker, &|_| {}).await;
+    let made = made.map_err(|error| error.to_string())?;
+    for stimulus in &damaged {
+        let again = made.get(&stimulus.item, &stimulus.condition).map_err(|error| error.to_string())?;
+        if again.sha256 != stimulus.sha256 {
+            return Err(format!(
+                "{} ({}) was made again and came out otherwise",
+                stimulus.item, stimulus.condition
+            ));
+        }
+    }
+    Ok(damaged.len())
+}
+
+/// Whether a stimulus and all that it names are stored as they were.
+async fn is_whole(app: &App, sha256: &str) -> Result<bool, StoreError> {
+    let mut wanted = vec![sha256.to_owned()];
+    while let Some(sha256) = wanted.pop() {
+        match app.store.stimulus(&sha256).await {
+            Ok(Some((media_type, bytes))) if media_type == ANIMATION => wanted.extend(making::frames(&bytes)),
+            Ok(Some(_)) => {}
+            Ok(None) | Err(StoreError::Damaged { .. }) => return Ok(false),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(true)
+}

@@ -1,0 +1,104 @@
+//! A study in several languages: its own, and the translations of all that participants read.
+
+use crate::definition::{StudyDefinition, Texts};
+use crate::fields::{Fields, Gatherer, text};
+use crate::parse::{QUESTION, TITLE, read_texts};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use toml::Value;
+use utoipa::ToSchema;
+
+/// The language of a file that names none.
+const UNNAMED: &str = "en";
+
+/// The rule of [`language`] in words.
+const LANGUAGE: &str = "a language tag such as \"de\", \"pt-BR\" or \"zh-Hant\", of at most 35 characters";
+
+/// What participants read of a study, in another language than its own.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Translation {
+    /// Title.
+    pub title: String,
+    /// The question over every trial.
+    pub question: String,
+    /// What participants read.
+    pub texts: Texts,
+}
+
+impl StudyDefinition {
+    /// The language in which a session that asked for `wanted` reads the study: that one where the study has it, else its own.
+    pub fn language_for<'a>(&'a self, wanted: Option<&'a str>) -> &'a str {
+        wanted.filter(|wanted| self.translations.contains_key(*wanted)).unwrap_or(&self.language)
+    }
+
+    /// What participants read in a language; in the study's own where it has no such translation.
+    pub fn texts_in(&self, language: &str) -> &Texts {
+        self.translations.get(language).map_or(&self.texts, |translation| &translation.texts)
+    }
+}
+
+/// The study's own language.
+pub(crate) fn read_language(fields: &mut Fields<'_>) -> Option<String> {
+    if !fields.has("language") {
+        fields.raw("language");
+        return Some(unnamed());
+    }
+    fields.get("language", LANGUAGE, |v| v.as_str().filter(|tag| language(tag)).map(str::to_owned))
+}
+
+/// The translations by language; each is whole.
+pub(crate) fn read_translations(
+    gatherer: &Gatherer<'_>,
+    fields: &mut Fields<'_>,
+    own: Option<&str>,
+) -> Option<BTreeMap<String, Translation>> {
+    let Some(value) = fields.raw("translations") else { return Some(BTreeMap::new()) };
+    let Some(table) = value.as_table() else {
+        fields.report("translations", Some(value), "must be a table with a table for each language");
+        return None;
+    };
+    let mut translations = BTreeMap::new();
+    for (tag, value) in table {
+        let path = format!("translations.{tag}");
+        if !language(tag) {
+            gatherer.report(&path, Some(&Value::String(tag.clone())), format!("must be {LANGUAGE}"));
+        }
+        if own == Some(tag) {
+            gatherer.report(
+                &path,
+                None,
+                "is the study's own language, whose texts stand outside the translations",
+            );
+        }
+        let mut fields = Fields::of(gatherer, path, value)?;
+        let title = fields.need("title", TITLE, |v| text(v, 200));
+        let question = fields.need("question", QUESTION, |v| text(v, 300));
+        let texts = read_texts(gatherer, &mut fields);
+        fields.finish();
+        if let (Some(title), Some(question), Some(texts)) = (title, question, texts) {
+            translations.insert(tag.clone(), Translation { title, question, texts });
+        }
+    }
+    Some(translations)
+}
+
+/// A well-formed language tag (BCP 47, its shape alone): letters, then parts of letters and digits.
+fn language(tag: &str) -> bool {
+    let mut parts = tag.split('-');
+    let first = parts.next().unwrap_or_default();
+    tag.len() <= 35
+        && (2..=3).contains(&first.len())
+        && first.bytes().all(|b| b.is_ascii_lowercase())
+        && parts.all(|part| (2..=8).contains(&part.len()) && part.bytes().all(|b| b.is_ascii_alphanumeric()))
+}
+
+pub(crate) fn unnamed() -> String {
+    UNNAMED.to_owned()
+}
+
+pub(crate) fn is_unnamed(language: &str) -> bool {
+    language == UNNAMED
+}
+
+#[cfg(test)]
+mod tests;

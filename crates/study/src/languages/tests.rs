@@ -1,0 +1,116 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+
+const STUDY: &str = r#"
+title = "Shadows"
+question = "Which?"
+seed = 7
+size = [592, 333]
+estimated_minutes = 3
+[texts]
+welcome = "w"
+consent = "c"
+instructions = "i"
+debriefing = "d"
+thanks = "t"
+[conditions]
+pa.technique = "pa"
+mc.technique = "mc"
+[[blocks]]
+id = "stills"
+title = "Stills"
+kind = "still"
+conditions = ["pa", "mc"]
+target = "pa"
+items = [{ id = "a", scene = "../scenes/a.toml" }]
+"#;
+
+const GERMAN: &str = r#"
+[translations.de]
+title = "Schatten"
+question = "Welches?"
+[translations.de.texts]
+welcome = "W"
+consent = "C"
+instructions = "I"
+debriefing = "D"
+thanks = "T"
+"#;
+
+fn read(source: &str) -> StudyDefinition {
+    StudyDefinition::parse("shadows.toml", source).unwrap()
+}
+
+fn problems(source: &str) -> Vec<String> {
+    let errors = StudyDefinition::parse("shadows.toml", source).unwrap_err();
+    errors.0.iter().map(|problem| format!("{}: {}", problem.field, problem.rule)).collect()
+}
+
+#[test]
+fn a_session_reads_the_language_it_asked_for_where_the_study_has_it() {
+    let study = read(&format!("{STUDY}{GERMAN}"));
+    assert_eq!(study.language, "en");
+    let read = |wanted| {
+        let language = study.language_for(wanted);
+        (language, study.texts_in(language).consent[0].as_str())
+    };
+    assert_eq!(read(Some("de")), ("de", "C"));
+    assert_eq!(read(Some("en")), ("en", "c"));
+    assert_eq!(read(Some("fr")), ("en", "c"));
+    assert_eq!(read(None), ("en", "c"));
+}
+
+#[test]
+fn a_study_in_one_language_may_say_which_and_no_answer_depends_on_it() {
+    let (unnamed, german) = (read(STUDY), read(&format!("language = \"de\"\n{STUDY}")));
+    assert_eq!(german.language_for(Some("en")), "de");
+    assert_eq!(unnamed.design_hash(), german.design_hash());
+    assert_ne!(unnamed.file_hash(), german.file_hash());
+    assert_eq!(read(&format!("language = \"en\"\n{STUDY}")).file_hash(), unnamed.file_hash());
+}
+
+#[test]
+fn what_is_judged_by_counts_in_every_language() {
+    let study = format!("{STUDY}{GERMAN}");
+    let hash = |source: &str| read(source).design_hash();
+    assert_ne!(hash(&study), hash(STUDY));
+    for text in ["\"Schatten\"", "\"W\"", "\"C\"", "\"D\"", "\"T\""] {
+        assert_eq!(hash(&study.replace(text, "\"anders\"")), hash(&study), "{text}");
+    }
+    for text in ["\"Welches?\"", "\"I\""] {
+        assert_ne!(hash(&study.replace(text, "\"anders\"")), hash(&study), "{text}");
+    }
+    let back: StudyDefinition = serde_json::from_str(&read(&study).to_json()).unwrap();
+    assert_eq!(back, read(&study));
+}
+
+#[test]
+fn every_problem_of_a_translation_is_named() {
+    let missing =
+        GERMAN.replace("consent = \"C\"\n", "").replace("title = \"Schatten\"\n", "titel = \"Schatten\"\n");
+    let found = problems(&format!("{STUDY}{missing}"));
+    assert_eq!(found.len(), 3, "{found:?}");
+    assert!(found.iter().any(|p| p.starts_with("translations.de.title: missing")), "{found:?}");
+    assert!(found.iter().any(|p| p.starts_with("translations.de.texts.consent: missing")), "{found:?}");
+    assert!(found.iter().any(|p| p.starts_with("translations.de.titel: unknown key")), "{found:?}");
+    let own = problems(&format!("language = \"de\"\n{STUDY}{GERMAN}"));
+    assert_eq!(
+        own,
+        ["translations.de: is the study's own language, whose texts stand outside the translations"]
+    );
+    let named = problems(&format!("language = \"Deutsch\"\n{STUDY}"));
+    assert!(named[0].starts_with("language: must be a language tag"), "{named:?}");
+    let table = problems(&format!("translations = 3\n{STUDY}"));
+    assert_eq!(table, ["translations: must be a table with a table for each language"]);
+}
+
+#[test]
+fn language_tags_by_their_shape() {
+    for tag in ["de", "pt-BR", "zh-Hant", "ar", "gsw", "de-CH-1996"] {
+        assert!(language(tag), "{tag}");
+    }
+    for tag in ["", "d", "DE", "german", "de_AT", "de-", "de-x", "ar-\u{661}1", "de-aaaaaaaaa"] {
+        assert!(!language(tag), "{tag}");
+    }
+}

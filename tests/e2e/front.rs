@@ -1,0 +1,186 @@
+//! The server as its operating system sees it: floods of sockets, few descriptors, a log that nobody can write, being asked to stop.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+use kelir_tests::{Server, Taking, binary, small_data};
+use serde_json::{Value, json};
+
+/// Connections that say nothing, or not enough.
+fn hang(server: &Server, count: usize, text: &[u8]) -> Vec<TcpStream> {
+    let address = server.base.strip_prefix("http://").unwrap();
+    let open = |_| {
+        let mut stream = TcpStream::connect(address).unwrap();
+        // A server that has closed it already is what is asked for.
+        let _ = stream.write_all(text);
+        stream
+    };
+    (0..count).map(open).collect()
+}
+
+#[test]
+fn idle_and_half_sent_connections_keep_nobody_out_and_end_with_the_server() {
+    let data = small_data();
+    let server = Server::start_small(data.path());
+    let head = b"POST /api/v1/studies/small/sessions HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: 50\r\n\r\n{";
+    // Fewer descriptors than this test process may have, more than the server lets one address hold.
+    let mut held = hang(&server, 250, b"");
+    held.extend(hang(&server, 250, b"GET /healthz HT"));
+    held.extend(hang(&server, 250, head));
+    let taking = Taking::begin(&server, "small", "5f0a");
+    assert_eq!(taking.answer(0, "left", 700.0).0, 200);
+    held.extend(hang(&server, 50, head));
+    assert_eq!(server.call("GET", "/healthz", None, &Value::Null).0, 200);
+    assert!(server.terminate().success(), "it ends well, whoever is still talking");
+    drop(held);
+}
+
+/// A server started by a shell line; its log goes to `log`.
+fn start_by(line: &str, data: &Path, port: u16, log: Stdio) -> Child {
+    let serve = format!(
+        "{line} exec {} serve --listen 127.0.0.1:{port} --data {}",
+        binary().display(),
+        data.display()
+    );
+    let mut command = Command::new("sh");
+    command.args(["-c", &serve]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(log);
+    command.spawn().unwrap()
+}
+
+fn free_port() -> u16 {
+    std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
+/// Waits for the study and takes a trial of it.
+fn can_be_taken(port: u16) {
+    let begun = std::time::Instant::now();
+    let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
+    let status =
+        |path: &str| agent.get(format!("http://127.0.0.1:{port}{path}")).call().map(|a| a.status().as_u16());
+    while status("/api/v1/studies/small").ok() != Some(200) {
+        assert!(begun.elapsed().as_secs() < 600, "the study is never ready");
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    }
+    let begin = format!("http://127.0.0.1:{port}/api/v1/studies/small/sessions");
+    assert_eq!(agent.post(begin).send_json(json!({})).unwrap().status().as_u16(), 201);
+    let wrong = json!({ "password": "not the password" });
+    let sign_in = format!("http://127.0.0.1:{port}/api/v1/auth/session");
+    assert_eq!(
+        agent.post(sign_in).send_json(wrong).unwrap().status().as_u16(),
+        401,
+        "what is logged loudest"
+    );
+}
+
+fn stop(mut child: Child) {
+    assert!(Command::new("kill").arg(child.id().to_string()).status().unwrap().success());
+    assert!(child.wait().unwrap().success());
+}
+
+#[test]
+fn few_descriptors_are_enough() {
+    let (data, port) = (small_data(), free_port());
+    let child = start_by("ulimit -n 100;", data.path(), port, Stdio::inherit());
+    can_be_taken(port);
+    let held: Vec<TcpStream> =
+        (0..300).filter_map(|_| TcpStream::connect(("127.0.0.1", port)).ok()).collect();
+    assert!(held.len() > 200);
+    can_be_taken(port);
+    drop(held);
+    stop(child);
+}
+
+#[test]
+fn a_log_that_cannot_be_written_takes_no_answer_with_it() {
+    let data = small_data();
+    for line in ["exec 2>&-;", "exec 2>/dev/full;", "exec 1>/dev/full;"] {
+        let port = free_port();
+        let child = start_by(line, data.path(), port, Stdio::inherit());
+        can_be_taken(port);
+        stop(child);
+    }
+    // A pipe that nobody reads, and one whose reader is gone.
+    for close in [false, true] {
+        let port = free_port();
+        let mut child = start_by("export KELIR_LOG=trace;", data.path(), port, Stdio::piped());
+        let pipe = child.stderr.take();
+        let kept = if close { None } else { pipe };
+        for _ in 0..5 {
+            can_be_taken(port);
+        }
+        stop(child);
+        drop(kept);
+    }
+}
+
+#[test]
+fn the_log_says_what_was_asked_and_nobodys_secrets() {
+    let (data, port) = (small_data(), free_port());
+    let mut child = start_by("", data.path(), port, Stdio::piped());
+    let mut pipe = child.stderr.take().unwrap();
+    can_be_taken(port);
+    let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
+    let base = format!("http://127.0.0.1:{port}");
+    let begin = agent.post(format!("{base}/api/v1/studies/small/sessions"));
+    let begun: Value = begin
+        .send_json(json!({ "params": { "PROLIFIC_PID": "5f0asecret" } }))
+        .unwrap()
+        .into_body()
+        .read_json()
+        .unwrap();
+    let (id, token) = (begun["session_id"].as_str().unwrap(), begun["token"].as_str().unwrap());
+    let state =
+        agent.get(format!("{base}/api/v1/sessions/{id}")).header("Authorization", format!("Bearer {token}"));
+    assert_eq!(state.call().unwrap().status().as_u16(), 200);
+    agent.get(format!("{base}/study/small?PROLIFIC_PID=5f0asecret")).call().unwrap();
+    agent.get(format!("{base}/nowhere/5f0asecret")).call().unwrap();
+    stop(child);
+    let mut log = String::new();
+    pipe.read_to_string(&mut log).unwrap();
+    for said in [
+        "kelir::access: method=POST route=\"/api/v1/studies/{study}/sessions\" status=201 ms=",
+        "kelir::access: method=GET route=\"/api/v1/sessions/{session}\" status=200 ms=",
+        "kelir::access: method=GET route=\"/study/{study}\" status=200 ms=",
+        "kelir::access: method=GET route=\"none\" status=404 ms=",
+        "kelir::audit: a sign-in failed",
+        "kelir::audit: started",
+        "kelir::audit: stopped",
+    ] {
+        assert!(log.contains(said), "{said} in\n{log}");
+    }
+    for secret in [id, token, "5f0asecret", "not the password"] {
+        assert!(!log.contains(secret), "{secret} in\n{log}");
+    }
+}
+
+#[test]
+fn the_greeting_says_whose_password_is_in_force_and_links_can_be_opened() {
+    let data = small_data();
+    let greeting = |password: Option<&str>, listen: &str| {
+        let mut command = Command::new(binary());
+        command.args(["serve", "--listen", listen, "--data"]).arg(data.path()).stdin(Stdio::null());
+        command.env_remove("KELIR_RESEARCHER_PASSWORD").stdout(Stdio::piped()).stderr(Stdio::null());
+        if let Some(password) = password {
+            command.env("KELIR_RESEARCHER_PASSWORD", password);
+        }
+        let mut child = command.spawn().unwrap();
+        let mut text = Vec::new();
+        let mut out = child.stdout.take().unwrap();
+        while !String::from_utf8_lossy(&text).contains("sign in with") || text.last() != Some(&b'\n') {
+            let mut byte = [0];
+            assert_eq!(out.read(&mut byte).unwrap(), 1, "{}", String::from_utf8_lossy(&text));
+            text.push(byte[0]);
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        String::from_utf8(text).unwrap()
+    };
+    let file = data.path().join("researcher-password").display().to_string();
+    let own = greeting(None, "127.0.0.1:0");
+    assert!(own.contains(&file) && !own.contains("KELIR_RESEARCHER_PASSWORD"), "{own}");
+    let given = greeting(Some("wayang kulit"), "0.0.0.0:0");
+    assert!(given.contains("KELIR_RESEARCHER_PASSWORD") && !given.contains(&file), "{given}");
+    assert!(given.contains("http://127.0.0.1:") && !given.contains("0.0.0.0"), "{given}");
+}
