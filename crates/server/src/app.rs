@@ -210,6 +210,11 @@ impl App {
     }
 }
 
+/// How long a session of a study may be silent and still hold its place.
+pub(crate) fn idle(study: &StudyDefinition) -> Duration {
+    Duration::from_secs(60 * u64::from(study.idle_minutes))
+}
+
 /// What participants are told of a study that cannot be taken; the console and the log say why.
 fn closed() -> Box<Problem> {
     let detail = "This study can't be taken at the moment. The researchers see the reason in their console.";
@@ -217,11 +222,6 @@ fn closed() -> Box<Problem> {
 }
 
 impl LoadedStudy {
-    /// How long a session may be silent and still hold its place.
-    pub(crate) fn idle(&self) -> Duration {
-        Duration::from_secs(60 * u64::from(self.study.idle_minutes))
-    }
-
     pub(crate) fn stimuli(&self) -> Stimuli {
         self.stimuli.read().unwrap_or_else(PoisonError::into_inner).clone()
     }
