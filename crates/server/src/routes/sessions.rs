@@ -2,6 +2,7 @@
 
 use super::studies::{StudyPath, told};
 use super::{Answered, Fresh, links, previews};
+use crate::address::ClientAddress;
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, Trial, refusals,
@@ -18,11 +19,16 @@ use kelir_store::{
     Appended, Begun, Completed, NextTrials, PlannedSession, PlannedTrial, Progress, SentAnswer, Session,
     SessionKind, StimulusHashes, sha256_hex,
 };
+use kelir_study::visits::Flag;
 use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Instant;
 use utoipa::IntoParams;
+
+/// Sessions that are begun at one address within ten minutes before the next is flagged: a class in a laboratory is fewer.
+const MOST_STARTS: usize = 30;
 
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Path)]
@@ -60,6 +66,7 @@ pub(crate) async fn create_session(
     State(app): State<Arc<App>>,
     Parameters(StudyPath { study }): Parameters<StudyPath>,
     SignedIn(researcher): SignedIn,
+    ClientAddress(address): ClientAddress,
     headers: HeaderMap,
     Body(new): Body<NewSession>,
 ) -> Result<(StatusCode, Fresh<CreatedSession>), Box<Problem>> {
@@ -81,6 +88,8 @@ pub(crate) async fn create_session(
         return Err(Problem::new(ProblemCode::Unauthorized, detail));
     }
     let person = loaded.study.session.identify(&params).map_err(Problem::refused_id)?;
+    let is_one_of_many =
+        kind == SessionKind::Participant && app.starts.note(address, Instant::now()) > MOST_STARTS;
     let new = kelir_store::NewSession {
         study_id: loaded.study.id.clone(),
         version: served.version.clone(),
@@ -88,7 +97,7 @@ pub(crate) async fn create_session(
         subject_id: person.map(|(_, id)| id.to_owned()),
         token_hash: sha256_hex(token.as_bytes()),
         kind,
-        flags: Vec::new(),
+        flags: is_one_of_many.then(|| Flag::ManyStarts.as_str().to_owned()).into_iter().collect(),
         repeat: loaded.study.session.repeat,
         start_key: start_key(&headers)?,
         user_agent: user_agent(&headers),
