@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 99647e9698138510de30362cb858c7136ee1c42caa2e4e6b25ac88f79a14c0a8 9bd5b5cf8e19dc052b62c906ff9666e7d86403bdc4c862a983d2a4ddcc0f30a2
+// Generated from openapi.json by `npm run types`; do not edit. a0127e015dab857428334b410681d12743474cb1c80e2c1fa030743a588121aa 261eabbe9632133a5d1c76b0389935bac9380b79e5bc292d11a8aae108ec3a3a
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -10,7 +10,10 @@ export interface paths {
         /** Who is signed in. */
         get: operations["get_signed_in"];
         put?: never;
-        /** Sign in: the answer sets the cookie `kelir_session`, for twelve hours. */
+        /**
+         * Sign in: the answer sets the cookie `kelir_session`, for twelve hours.
+         * @description After wrong passwords an answer takes longer, up to some seconds; nobody is locked out.
+         */
         post: operations["sign_in"];
         /** Sign out; whoever is not signed in stays so. */
         delete: operations["sign_out"];
@@ -70,6 +73,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/integrity": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What is damaged of all that is stored, as of the last look. */
+        get: operations["get_integrity"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/openapi.json": {
         parameters: {
             query?: never;
@@ -97,6 +117,74 @@ export interface paths {
         /** The survey of Taylor and Cameron, its three tests computed again. */
         get: operations["get_taylor_cameron"];
         put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/previews/{session}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Where a preview stands. */
+        get: operations["get_preview"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/previews/{session}/completion": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Finish a preview. Its code is none that a panel would take. */
+        post: operations["complete_preview"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/previews/{session}/consent": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Give consent in a preview. */
+        post: operations["consent_preview"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/previews/{session}/trials/{trial_index}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Answer a trial of a preview: checked as a session's, and stored nowhere. */
+        put: operations["answer_preview"];
         post?: never;
         delete?: never;
         options?: never;
@@ -155,6 +243,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sessions/{session}/stimuli/{address}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The bytes of a stimulus as a session gets them; they never change. The address is the permission.
+         * @description They are a line of JSON and then pictures, one after another. The line says `format` (2), `width`, `height`, `fps` (0 for a still), `loop`,
+         *     `frames` (which picture each frame shows), `picture_type` and `picture_bytes` (the length of each picture). A picture after the first is
+         *     a step from the one before it and twice as high: its upper half is added, its lower half then taken away. What follows the last picture means nothing.
+         */
+        get: operations["get_session_stimulus"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sessions/{session}/trials/{trial_index}": {
         parameters: {
             query?: never;
@@ -165,11 +275,12 @@ export interface paths {
         get?: never;
         /**
          * Answer a trial. The same answer may be sent again; another one is refused, and the first one stands.
-         * @description What the trial's kind asks for is held to its rules; keys beside it are kept as they come. An acknowledgement means that the answer is
-         *     on disk.
+         * @description Only the choice is asked of an answer: whatever else is in it is kept as it comes, and what breaks a rule of the schema is named in the
+         *     responses' `flags` and stands in no other column. An acknowledgement means that the answer is on disk.
          */
         put: operations["put_answer"];
-        post?: never;
+        /** Answer a trial, where what lies between browser and server lets no PUT pass: the same as PUT. */
+        post: operations["post_answer"];
         delete?: never;
         options?: never;
         head?: never;
@@ -210,6 +321,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/studies/{study}/links": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Make a link by which a study may be tried by who has it. */
+        post: operations["make_link"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/studies/{study}/sessions": {
         parameters: {
             query?: never;
@@ -219,7 +347,14 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Begin a session. The answer holds its token, which is told this once. */
+        /**
+         * Begin a session. The answer holds its token, which is told this once.
+         * @description Where somebody with the same id has begun before, the study file says what happens: another session begins, flagged; the one that is there
+         *     goes on, with a new token in place of the old one; or none does.
+         *
+         *     A reply can be lost: the same `Idempotency-Key` gives the session that it began again, with a new token in place of the old one, while it has
+         *     no consent yet; then `already_begun`.
+         */
         post: operations["create_session"];
         delete?: never;
         options?: never;
@@ -278,6 +413,57 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/studies/{study}/versions/{version}/events.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** One row for each thing that happened to a page while a trial was taken: lost focus, a resize, an input that did not count. */
+        get: operations["get_events_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/events_codebook.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What each column of `events.csv` is, as a table. */
+        get: operations["get_events_codebook_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/export.xlsx": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Every table in one spreadsheet, with a codebook: numbers are numbers whatever language the reader's spreadsheet speaks. */
+        get: operations["get_export_xlsx"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/studies/{study}/versions/{version}/pairs.csv": {
         parameters: {
             query?: never;
@@ -287,6 +473,43 @@ export interface paths {
         };
         /** The choices as pwcmp reads them, one row a trial. */
         get: operations["get_pairs_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/participants.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One row a session: who came, when, with what, how far, and whether their answers are judged. What each column is, is in
+         *     `participants_codebook.csv`.
+         */
+        get: operations["get_participants_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/participants_codebook.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What each column of `participants.csv` is, as a table. */
+        get: operations["get_participants_codebook_csv"];
         put?: never;
         post?: never;
         delete?: never;
@@ -380,6 +603,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/studies/{study}/visit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What the link of this query makes of a visit to a study. The parameters are those of the link itself. */
+        get: operations["get_visit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/healthz": {
         parameters: {
             query?: never;
@@ -387,7 +627,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Whether the server answers and its database can be read. */
+        /**
+         * Whether the server answers and can store: something is written, synced and taken away again.
+         * @description `degraded` means that something stored is damaged and people can take part all the same; researchers are told what.
+         */
         get: operations["get_health"];
         put?: never;
         post?: never;
@@ -405,7 +648,7 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The bytes of a stimulus, or of one frame of an animation; they never change.
+         * The bytes of a stored stimulus, or of one frame of an animation, for researchers; they never change.
          * @description An animation is JSON (`application/vnd.kelir.animation+json`) that names its frames by hash.
          */
         get: operations["get_stimulus"];
@@ -1011,12 +1254,18 @@ export interface components {
          * @enum {string}
          */
         Estimator: "automatic" | "maximum-likelihood" | "jeffreys";
+        /** @description What happened. */
+        EventKind: "blur" | "focus" | "hidden" | "visible" | "resize" | "orientation" | "fullscreen_enter" | "fullscreen_exit" | "ignored";
         /** @description A participant who is left out. */
         Excluded: {
+            /** @description Whether the session was finished. */
+            is_completed: boolean;
             /** @description Every reason there is. */
             reasons: components["schemas"]["Exclusion"][];
             /** @description Session's id. */
             session_id: string;
+            /** @description The reasons in words. */
+            why: string;
         };
         /** @description Why a participant is left out. */
         Exclusion: {
@@ -1053,6 +1302,11 @@ export interface components {
              * @description How many trials there were.
              */
             trials: number;
+        } | {
+            /** @description What was noticed. */
+            flag: components["schemas"]["Flag"];
+            /** @enum {string} */
+            reason: "flagged";
         } | {
             /**
              * Format: int32
@@ -1093,8 +1347,26 @@ export interface components {
             /** @description What was found there, long texts cut; absent where the field is missing, or secret. */
             value?: unknown;
         };
-        /** @description How an animation was shown. */
+        /** @description What can be known of a session besides its answers. */
+        Flag: "repeated_id" | "many_starts" | "faster_than_clock" | "no_response_time";
+        /** @description How many sessions something was noticed of. */
+        Flagged: {
+            /** @description Whether the study's rules leave these out. */
+            excludes: boolean;
+            /** @description What was noticed. */
+            flag: components["schemas"]["Flag"];
+            /** @description What that means. */
+            meaning: string;
+            /**
+             * Format: int64
+             * @description Of how many sessions.
+             */
+            sessions: number;
+        };
+        /** @description How an animation was shown. Its position is a function of time: frame n is due n / fps seconds after the first. */
         FrameLog: {
+            /** @description What was shown when: frame, counted on through loops, and ms since the first frame, of each frame drawn, up to 600. */
+            draws?: number[][] | null;
             /**
              * Format: double
              * @description Frames per second of the animation.
@@ -1102,14 +1374,19 @@ export interface components {
             fps?: number | null;
             /**
              * Format: double
-             * @description Refreshes that each frame is shown for.
+             * @description Refreshes that each frame was shown for, where pages counted these; they don't any more.
              */
             hold?: number | null;
             /**
              * Format: double
-             * @description Longest time between two draws.
+             * @description Longest time between two refreshes at which the page could draw.
              */
             longest_interval_ms?: number | null;
+            /**
+             * Format: double
+             * @description Frames that were never drawn, or later than their time by more than a refresh.
+             */
+            missed_frames?: number | null;
             /**
              * Format: double
              * @description Refreshes at which the browser did not let the page draw.
@@ -1117,7 +1394,7 @@ export interface components {
             missed_refreshes?: number | null;
             /**
              * Format: double
-             * @description Refresh rate that the animation was timed by.
+             * @description Refresh rate of the display, to which the nearest refresh of a frame's time is found.
              */
             refresh_hz?: number | null;
             /**
@@ -1135,6 +1412,27 @@ export interface components {
              * @description Frames passed over without being drawn.
              */
             skipped?: number | null;
+        };
+        /** @description How stimuli stand on the page. */
+        Geometry: {
+            arrangement?: components["schemas"]["Arrangement"] | null;
+            /**
+             * Format: double
+             * @description Width at which each stimulus stood, pinch zoom included: its width in pixels × scale / device_pixel_ratio.
+             */
+            css_width_px?: number | null;
+            /**
+             * Format: double
+             * @description Device pixels per CSS pixel.
+             */
+            device_pixel_ratio?: number | null;
+            /**
+             * Format: double
+             * @description Device pixels per stimulus pixel, pinch zoom included; 1 is native. Shown on device_pixel_ratio × css_width_px device pixels.
+             */
+            scale?: number | null;
+            /** @description Width and height of the window's inside, CSS px. */
+            viewport?: components["schemas"]["Length"][] | null;
         };
         /** @description Does the curve hold the data? */
         Goodness: {
@@ -1166,8 +1464,15 @@ export interface components {
          * @enum {string}
          */
         IccEstimator: "fleiss-cuzick" | "anova" | "beta-binomial";
+        /** @description Why an input does not count. */
+        Ignored: "untrusted" | "double" | "repeat" | "held" | "early" | "gap" | "answered";
         /** @description What an answer was given with. */
         Input: "mouse" | "touch" | "pen" | "keyboard";
+        /** @description What the server found when it last looked at all that it stores. */
+        IntegrityReport: {
+            /** @description What is damaged and could not be mended, a sentence each; empty where all is well. */
+            faults: string[];
+        };
         /** @description A confidence (or credible) interval. */
         Interval: {
             /**
@@ -1307,6 +1612,16 @@ export interface components {
             level: number;
             target?: components["schemas"]["Proportion"] | null;
         };
+        /** @description A link by which a study may be tried by who has it. */
+        Link: {
+            /**
+             * Format: int64
+             * @description When it ends, seconds since 1970.
+             */
+            expires_at_s: number;
+            /** @description Path and query, below the server's address. */
+            path: string;
+        };
         /** @description What one value of a column means. */
         Meaning: {
             /** @description What it means; empty where the value says it. */
@@ -1371,13 +1686,24 @@ export interface components {
          * @enum {string}
          */
         Model: "thurstone" | "bradley-terry";
+        /** @description A link that is asked for. */
+        NewLink: {
+            /**
+             * Format: int32
+             * @description For how many days it is good; 7 unless something else is said.
+             */
+            days?: number | null;
+            /** @description What it is for. */
+            visit: components["schemas"]["Trying"];
+        };
         /** @description What is known of someone who begins. */
         NewSession: {
             /** @description What the browser says about its display; kept as it comes. `language` is the one in which the study is read. */
             display?: {
                 [key: string]: unknown;
             } | null;
-            /** @description The parameters of the address that they came by. The first of `PROLIFIC_PID`, `workerId`, `subject_id` and `id` that is a plain name names the participant. */
+            kind?: components["schemas"]["SessionKind"] | null;
+            /** @description The parameters of the address that they came by. The participant is named by the one that the study file says, or else by the first that is there of `PROLIFIC_PID`, `workerId`, `subject_id`, `id`; an id has at most 512 bytes and no control characters. */
             params?: {
                 [key: string]: string;
             } | null;
@@ -1570,7 +1896,7 @@ export interface components {
             type: string;
         };
         /** @description What kind of problem it is. */
-        ProblemCode: "bad_body" | "bad_json" | "invalid_parameter" | "ambiguous_version" | "unauthorized" | "wrong_password" | "not_found" | "method_not_allowed" | "no_consent" | "already_answered" | "incomplete" | "too_large" | "not_json" | "invalid_field" | "too_many_tries" | "internal" | "not_ready" | "stimuli_failed";
+        ProblemCode: "bad_body" | "bad_json" | "invalid_parameter" | "ambiguous_version" | "unauthorized" | "wrong_password" | "cross_site" | "link_refused" | "not_found" | "method_not_allowed" | "no_consent" | "already_answered" | "already_begun" | "already_finished" | "incomplete" | "too_large" | "not_json" | "invalid_field" | "internal" | "unavailable" | "not_ready" | "stimuli_failed";
         /** @description How far the stimuli are. */
         Progress: {
             /** @description Stimuli that are ready. */
@@ -1684,6 +2010,13 @@ export interface components {
          * @enum {string}
          */
         Repeat: "flag" | "resume" | "refuse";
+        /** @description A session of a person whose answers are counted already. */
+        Repeated: {
+            /** @description The person's session that counts: the first complete one, or the first with answers where none is complete. */
+            counted: string;
+            /** @description Session's id. */
+            session_id: string;
+        };
         /** @description The whole replication. */
         Replication: {
             /** @description The three comparisons in the paper's order. */
@@ -1822,6 +2155,8 @@ export interface components {
         };
         /** @description Whose answers are set aside, decided before there are any. */
         Screening: {
+            /** @description What excludes the participant where it was noticed of the session. */
+            flags?: components["schemas"]["Flag"][];
             /** @description Whether not finishing excludes the participant. */
             incomplete: boolean;
             /**
@@ -1842,8 +2177,12 @@ export interface components {
             /** @description Whether choosing the same side in every one of at least five trials excludes the participant. */
             straight_lining: boolean;
         };
+        /** @description Whose a session is. The analysis is of participants alone. */
+        SessionKind: "participant" | "pilot" | "simulated";
         /** @description Whose visit is whose. */
         SessionRules: {
+            /** @description The parameter of the participant's link that names the participant; absent: the first that is there of those that panels use. */
+            id?: string | null;
             /** @description Parameters of the participant's link that stand in the table of participants, besides the one that names the participant. */
             params?: string[];
             /** @description Whether each visit is somebody else's, as on a laboratory's computer: nothing is resumed without being asked for. */
@@ -1943,6 +2282,32 @@ export interface components {
              */
             t: number;
         };
+        /** @description Who is judged, and who is not. */
+        Standing: {
+            /** @description What was noticed of sessions, whether or not it leaves them out. */
+            flagged: components["schemas"]["Flagged"][];
+            /**
+             * Format: int64
+             * @description Participants whose answers are judged.
+             */
+            judged: number;
+            /**
+             * Format: int64
+             * @description Trial runs of researchers, left out.
+             */
+            pilots: number;
+            /** @description Sessions of persons whose first complete session counts. */
+            repeated: components["schemas"]["Repeated"][];
+            /**
+             * Format: int64
+             * @description Sessions of simulations, left out.
+             */
+            simulated: number;
+            /** @description The numbers in a sentence. */
+            summary: string;
+            /** @description Kinds of sessions that are judged like participants', because somebody asked for it. */
+            with: components["schemas"]["SessionKind"][];
+        };
         /** @description A number of whole frames for each step of the trial. */
         StepFrames: {
             /**
@@ -2002,11 +2367,14 @@ export interface components {
             /** @description Hash of the stimulus's file. */
             sha256: string;
         };
-        /** @description The bytes of one stimulus: what they hash to and where they are. */
+        /**
+         * @description The bytes of one stimulus as this session gets them: what they hash to and where they are. Other sessions get other bytes and
+         *     addresses for the same picture.
+         */
         StimulusRef: {
             /** @description SHA-256 of the bytes. */
             sha256: string;
-            /** @description Their address on this server. */
+            /** @description Their address on this server; who knows it may have them. */
             url: string;
         };
         /** @description An answer as it is stored. */
@@ -2150,6 +2518,8 @@ export interface components {
             scale_with_excluded?: components["schemas"]["ScaleIntervals"] | null;
             /** @description The study's rules of screening. */
             screening: components["schemas"]["Screening"];
+            /** @description Who is judged, and who is not. */
+            standing: components["schemas"]["Standing"];
             /** @description What was shown, with how it was made and its measured error. */
             stimuli: components["schemas"]["Stimulus"][];
             /** @description Study's id. */
@@ -2178,6 +2548,8 @@ export interface components {
             scale?: components["schemas"]["Scale"] | null;
             /** @description Why there is no scale. */
             scale_note?: string | null;
+            /** @description Who is judged, and who is not. */
+            standing: components["schemas"]["Standing"];
             /** @description What was shown, with how it was made and its measured error. */
             stimuli: components["schemas"]["Stimulus"][];
             /** @description Study's id. */
@@ -2292,21 +2664,24 @@ export interface components {
             t?: number | null;
         };
         /** @description What every page says of how a trial was taken. A stimulus pixel is one of the picture, a device pixel one of the display, a CSS pixel one of the page. */
-        Taken: {
+        Taken: components["schemas"]["Geometry"] & {
+            at_onset?: components["schemas"]["Geometry"] | null;
+            /** @description What happened to the page from the last answer to this one; the table of events has a row each. */
+            events?: components["schemas"]["TrialEvent"][] | null;
             /**
-             * Format: double
-             * @description Width at which each stimulus stood, pinch zoom included: its width in pixels × scale / device_pixel_ratio.
+             * Format: int32
+             * @description How many events there were beyond those that are listed.
              */
-            css_width_px?: number | null;
-            /**
-             * Format: double
-             * @description Device pixels per CSS pixel.
-             */
-            device_pixel_ratio?: number | null;
+            events_dropped?: number | null;
             /** @description Of animations: how each was played, by role. */
             frames?: {
                 [key: string]: components["schemas"]["FrameLog"];
             } | null;
+            /**
+             * Format: int32
+             * @description 1 where they stood otherwise at onset, else 0; the changes are events.
+             */
+            geometry_changed?: number | null;
             /**
              * Format: double
              * @description How long the page was hidden during the trial.
@@ -2318,6 +2693,11 @@ export interface components {
              * @description The shortest time for which any of the trial's stimuli was in view before the answer.
              */
             min_visible_ms?: number | null;
+            /**
+             * Format: int32
+             * @description Of animations: how many of their frames were never drawn, or later than their time by more than a refresh. More than 0 marks a trial.
+             */
+            missed_frames?: number | null;
             /**
              * Format: double
              * @description When that frame was shown, by the page's own clock.
@@ -2342,11 +2722,6 @@ export interface components {
             rt: number;
             /**
              * Format: double
-             * @description Device pixels per stimulus pixel, pinch zoom included; 1 is native. Shown on device_pixel_ratio × css_width_px device pixels.
-             */
-            scale?: number | null;
-            /**
-             * Format: double
              * @description From the start of the page's session to the answer.
              */
             time_elapsed?: number | null;
@@ -2354,8 +2729,6 @@ export interface components {
             timestamp?: string | null;
             /** @description Plugin that showed the trial. */
             trial_type?: string | null;
-            /** @description Width and height of the window's inside, CSS px. */
-            viewport?: components["schemas"]["Length"][] | null;
         };
         /** @description What participants read; each text is a list of plain paragraphs. */
         Texts: {
@@ -2486,6 +2859,21 @@ export interface components {
              */
             width: number;
         };
+        /** @description One thing that happened to the page. */
+        TrialEvent: components["schemas"]["Geometry"] & {
+            choice?: components["schemas"]["Role"] | null;
+            /** @description What happened. */
+            event: components["schemas"]["EventKind"];
+            input?: components["schemas"]["Input"] | null;
+            /** @description Of a turned display: how it is held now, in the browser's words, such as landscape-primary. */
+            orientation?: string | null;
+            reason?: components["schemas"]["Ignored"] | null;
+            /**
+             * Format: double
+             * @description When, from the trial's onset; below 0 it was before that and after the last answer.
+             */
+            time_ms: number;
+        };
         /** @description How a trial asks, with the settings of its kind: a block's `trial` and `[blocks.trial_settings]`. */
         TrialKind: {
             /** @enum {string} */
@@ -2500,9 +2888,10 @@ export interface components {
         TrialName: "two-alternative" | "two-interval";
         /** @description The settings of a trial's kind, as its page needs them. */
         TrialSettings: components["schemas"]["Intervals"];
+        /** @description What a link is for. */
+        Trying: "pilot" | "preview";
         /** @description What a page sends for a two-alternative trial. */
         TwoAlternativeAnswer: components["schemas"]["Taken"] & {
-            arrangement?: components["schemas"]["Arrangement"] | null;
             /** @description The picture chosen. */
             choice: components["schemas"]["Side"];
         };
@@ -2525,6 +2914,13 @@ export interface components {
             items: components["schemas"]["StudyVersion"][];
             /** @description What to ask with for the next page; null on the last one. */
             next_cursor: string | null;
+        };
+        /** @description What a visit to a study is. */
+        Visit: "participant" | "pilot" | "preview";
+        /** @description What a visit to a study is. */
+        VisitKind: {
+            /** @description What it is. */
+            visit: components["schemas"]["Visit"];
         };
         /** @description One of the two intervals. */
         Which: "first" | "second";
@@ -2576,6 +2972,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
                     };
                 };
             };
@@ -2663,20 +3073,6 @@ export interface operations {
                     };
                 };
             };
-            /** @description `too_many_tries`: Too many wrong passwords; `Retry-After` says how long to wait. */
-            429: {
-                headers: {
-                    /** @description Seconds to wait before asking again. */
-                    "Retry-After"?: number;
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"] & {
-                        /** @enum {string} */
-                        code: "too_many_tries";
-                    };
-                };
-            };
             /** @description `internal`: Something is wrong on the server; its log has the reason. */
             500: {
                 headers: {
@@ -2686,6 +3082,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
                     };
                 };
             };
@@ -2719,6 +3129,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     find_docs: {
@@ -2746,6 +3170,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
                     };
                 };
             };
@@ -2781,6 +3219,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_docs_style: {
@@ -2813,6 +3265,78 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_integrity: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description What was found. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["IntegrityReport"];
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_openapi: {
@@ -2842,6 +3366,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
                     };
                 };
             };
@@ -2886,6 +3424,393 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_preview: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The preview's id. */
+                session: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The preview. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    complete_preview: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The preview's id. */
+                session: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The end. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Completion"];
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `incomplete`: Trials have no answer yet: those in `missing`, or others that are still to be decided where `more` is true. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "incomplete";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    consent_preview: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The preview's id. */
+                session: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The preview. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    answer_preview: {
+        parameters: {
+            query?: {
+                /** @description Number of trials that the page knows: those from this index on are told. Absent: none are. */
+                known?: number;
+            };
+            header?: never;
+            path: {
+                /** @description The session's id. */
+                session: string;
+                /** @description The trial's index, in plain digits. */
+                trial_index: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Answer"];
+            };
+        };
+        responses: {
+            /** @description It was checked. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Acknowledgement"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `bad_body`: The body could not be read. `bad_json`: The body is no JSON, or no JSON object. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "bad_body" | "bad_json";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `no_consent`: An answer can be stored only after consent. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "no_consent";
+                    };
+                };
+            };
+            /** @description `too_large`: The body is larger than the address takes. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "too_large";
+                    };
+                };
+            };
+            /** @description `not_json`: The body is not sent as `application/json`. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_json";
+                    };
+                };
+            };
+            /** @description `invalid_field`: Fields of the body break their rules; `errors` names them all. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_field";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
                     };
                 };
             };
@@ -2945,6 +3870,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
                     };
                 };
             };
@@ -3019,6 +3958,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     give_consent: {
@@ -3075,6 +4028,106 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_session_stimulus: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The session's id. */
+                session: string;
+                /** @description What the session was told as the end of the address. */
+                address: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The bytes. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.kelir.stimulus": string;
+                };
+            };
+            /** @description The bytes that `Range` asks for. */
+            206: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.kelir.stimulus": string;
+                };
+            };
+            /** @description `If-None-Match` names them: the browser has them already. */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `Range` asks for bytes beyond the last. */
+            416: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `not_ready`: The server is starting, or the study's images are still being made; `Retry-After` says when to ask again. `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_ready" | "unavailable";
                     };
                 };
             };
@@ -3206,6 +4259,162 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    post_answer: {
+        parameters: {
+            query?: {
+                /** @description Number of trials that the page knows: those from this index on are told. Absent: none are. */
+                known?: number;
+            };
+            header?: never;
+            path: {
+                /** @description The session's id. */
+                session: string;
+                /** @description The trial's index, in plain digits. */
+                trial_index: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Answer"];
+            };
+        };
+        responses: {
+            /** @description It is stored. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Acknowledgement"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `bad_body`: The body could not be read. `bad_json`: The body is no JSON, or no JSON object. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "bad_body" | "bad_json";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `no_consent`: An answer can be stored only after consent. `already_answered`: The trial has another answer already; `stored` is what stands. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "no_consent" | "already_answered";
+                    };
+                };
+            };
+            /** @description `too_large`: The body is larger than the address takes. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "too_large";
+                    };
+                };
+            };
+            /** @description `not_json`: The body is not sent as `application/json`. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_json";
+                    };
+                };
+            };
+            /** @description `invalid_field`: Fields of the body break their rules; `errors` names them all. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_field";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     list_studies: {
@@ -3267,6 +4476,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_study: {
@@ -3314,7 +4537,7 @@ export interface operations {
                     };
                 };
             };
-            /** @description `not_ready`: The study's images are still being made; `Retry-After` says when to ask again. `stimuli_failed`: The study's images could not be made. */
+            /** @description `not_ready`: The server is starting, or the study's images are still being made; `Retry-After` says when to ask again. `stimuli_failed`: The study cannot be taken at the moment; researchers see the reason in the console. `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
             503: {
                 headers: {
                     /** @description Seconds to wait before asking again. */
@@ -3324,13 +4547,13 @@ export interface operations {
                 content: {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
-                        code: "not_ready" | "stimuli_failed";
+                        code: "not_ready" | "stimuli_failed" | "unavailable";
                     };
                 };
             };
         };
     };
-    create_session: {
+    make_link: {
         parameters: {
             query?: never;
             header?: never;
@@ -3342,17 +4565,17 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["NewSession"];
+                "application/json": components["schemas"]["NewLink"];
             };
         };
         responses: {
-            /** @description The session. */
-            201: {
+            /** @description The link. */
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CreatedSession"];
+                    "application/json": components["schemas"]["Link"];
                 };
             };
             /** @description `bad_body`: The body could not be read. `bad_json`: The body is no JSON, or no JSON object. */
@@ -3364,6 +4587,18 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "bad_body" | "bad_json";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
                     };
                 };
             };
@@ -3427,7 +4662,7 @@ export interface operations {
                     };
                 };
             };
-            /** @description `not_ready`: The study's images are still being made; `Retry-After` says when to ask again. `stimuli_failed`: The study's images could not be made. */
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
             503: {
                 headers: {
                     /** @description Seconds to wait before asking again. */
@@ -3437,7 +4672,159 @@ export interface operations {
                 content: {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
-                        code: "not_ready" | "stimuli_failed";
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    create_session: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The browser's own key of its wish to begin, 1 to 255 visible ASCII characters. */
+                "Idempotency-Key"?: string | null;
+            };
+            path: {
+                /** @description The study's id. */
+                study: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewSession"];
+            };
+        };
+        responses: {
+            /** @description The session. */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CreatedSession"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `bad_body`: The body could not be read. `bad_json`: The body is no JSON, or no JSON object. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "bad_body" | "bad_json";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `link_refused`: The link is signed and not good: it has ended or was changed. */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "link_refused";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `already_begun`: Somebody with this id has begun the study already; whoever that is goes on in the browser where it was. `already_finished`: Somebody with this id has finished the study already; the code is shown in the browser where it was. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "already_begun" | "already_finished";
+                    };
+                };
+            };
+            /** @description `too_large`: The body is larger than the address takes. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "too_large";
+                    };
+                };
+            };
+            /** @description `not_json`: The body is not sent as `application/json`. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_json";
+                    };
+                };
+            };
+            /** @description `invalid_field`: Fields of the body break their rules; `errors` names them all. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_field";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `not_ready`: The server is starting, or the study's images are still being made; `Retry-After` says when to ask again. `stimuli_failed`: The study cannot be taken at the moment; researchers see the reason in the console. `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_ready" | "stimuli_failed" | "unavailable";
                     };
                 };
             };
@@ -3517,6 +4904,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_codebook_csv: {
@@ -3524,6 +4925,8 @@ export interface operations {
             query?: {
                 /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
                 with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
             };
             header?: never;
             path: {
@@ -3593,6 +4996,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_codebook: {
@@ -3600,6 +5017,8 @@ export interface operations {
             query?: {
                 /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
                 with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
             };
             header?: never;
             path: {
@@ -3669,13 +5088,29 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
-    get_pairs_csv: {
+    get_events_csv: {
         parameters: {
             query?: {
                 /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
                 with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
             };
             header?: never;
             path: {
@@ -3745,6 +5180,480 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_events_codebook_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_export_xlsx: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": number[];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_pairs_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_participants_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_participants_codebook_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_report: {
@@ -3752,6 +5661,8 @@ export interface operations {
             query?: {
                 /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
                 with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
             };
             header?: never;
             path: {
@@ -3821,6 +5732,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_report_html: {
@@ -3828,6 +5753,8 @@ export interface operations {
             query?: {
                 /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
                 with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
             };
             header?: never;
             path: {
@@ -3897,6 +5824,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_report_md: {
@@ -3904,6 +5845,8 @@ export interface operations {
             query?: {
                 /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
                 with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
             };
             header?: never;
             path: {
@@ -3973,6 +5916,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_responses_csv: {
@@ -3980,6 +5937,8 @@ export interface operations {
             query?: {
                 /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
                 with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
             };
             header?: never;
             path: {
@@ -4049,6 +6008,20 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_results: {
@@ -4056,6 +6029,8 @@ export interface operations {
             query?: {
                 /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
                 with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
             };
             header?: never;
             path: {
@@ -4125,6 +6100,93 @@ export interface operations {
                     };
                 };
             };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_visit: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The visit. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VisitKind"];
+                };
+            };
+            /** @description `link_refused`: The link is signed and not good: it has ended or was changed. */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "link_refused";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
         };
     };
     get_health: {
@@ -4136,7 +6198,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description `ok` */
+            /** @description `ok` or `degraded` */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -4154,6 +6216,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
                     };
                 };
             };
@@ -4182,12 +6258,31 @@ export interface operations {
                     "image/png": string;
                 };
             };
+            /** @description The bytes that `Range` asks for. */
+            206: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
             /** @description `If-None-Match` names them: the browser has them already. */
             304: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
             };
             /** @description `not_found`: There is nothing of this name. */
             404: {
@@ -4201,6 +6296,13 @@ export interface operations {
                     };
                 };
             };
+            /** @description `Range` asks for bytes beyond the last. */
+            416: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
             /** @description `internal`: Something is wrong on the server; its log has the reason. */
             500: {
                 headers: {
@@ -4210,6 +6312,20 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
                         code: "internal";
+                    };
+                };
+            };
+            /** @description `not_ready`: The server is starting, or the study's images are still being made; `Retry-After` says when to ask again. `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_ready" | "unavailable";
                     };
                 };
             };

@@ -184,7 +184,7 @@ async fn garbage(client: &Client, operation: &Operation) -> Vec<Answer> {
 #[tokio::test(flavor = "multi_thread")]
 async fn every_operation_refuses_as_it_is_documented() {
     // What this test cannot bring about: failures of the server, and two versions of one hash's beginning.
-    let rare = ["internal", "bad_body", "ambiguous_version", "stimuli_failed", "not_ready"];
+    let rare = ["internal", "unavailable", "bad_body", "ambiguous_version", "stimuli_failed", "not_ready"];
     let client = Client::ready().await;
     for operation in operations() {
         let (id, documented) = (operation.id().to_owned(), operation.codes());
