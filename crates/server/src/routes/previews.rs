@@ -28,7 +28,11 @@ pub(crate) struct PreviewPath {
 }
 
 /// Begins a preview of a study as it is served now.
-pub(super) async fn begin(app: &App, begun: Begun, language: Option<&str>) -> Result<CreatedSession, Box<Problem>> {
+pub(super) async fn begin(
+    app: &App,
+    begun: Begun,
+    language: Option<&str>,
+) -> Result<CreatedSession, Box<Problem>> {
     // Each preview has a plan of its own, so that restarting shows other orders and sides.
     let slot =
         u32::from_le_bytes(uuid::Uuid::new_v4().into_bytes()[..4].try_into().unwrap_or_default()) >> 12;
