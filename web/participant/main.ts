@@ -1,4 +1,5 @@
 /** The participant's page: one study, from consent to the completion code. */
+import "./steady.ts";
 import { Refused } from "../shared/http.ts";
 import * as api from "./api.ts";
 import { choose, inLanguage, type Reading } from "./language.ts";

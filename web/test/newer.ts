@@ -32,16 +32,19 @@ function everywhere({ __compat }: Entry): boolean {
 
 const has = new Set<string>();
 const hasNot = new Set<string>();
-for (const all of [data.api, data.javascript.builtins]) {
-  for (const [name, entry] of Object.entries(all as Record<string, Entry>)) {
-    for (const [member, inner] of [[name, entry], ...Object.entries(entry)] as [string, Entry][]) {
-      if (inner.__compat === undefined) continue;
-      const own = member.replace(/_(static|event)$/, "");
-      (everywhere(inner) ? has : hasNot).add(own);
-      if (member !== name) (everywhere(inner) ? has : hasNot).add(`${name}.${own}`);
-    }
+/** Notes an object's members, each alone and as the object's; `Intl` holds objects itself. */
+function note(object: string, entry: Entry, depth: number): void {
+  for (const [member, inner] of Object.entries(entry) as [string, Entry][]) {
+    if (inner.__compat === undefined) continue;
+    const own = member.replace(/_(static|event)$/, "");
+    const set = everywhere(inner) ? has : hasNot;
+    set.add(own);
+    if (object !== "") set.add(`${object}.${own}`);
+    if (depth > 1) note(own, inner, depth - 1);
   }
 }
+note("", data.api, 2);
+note("", data.javascript.builtins, 3);
 
 /** Names that mean nothing to some of the oldest browsers: no object there has a member of that name, or not that object (`AbortSignal.timeout`). */
 export const newer: ReadonlySet<string> = new Set([...hasNot].filter((name) => !has.has(name)));

@@ -26,6 +26,7 @@ pub mod techniques;
 
 pub use exposure::white;
 pub use frame::*;
+pub use simd::Isa;
 pub use techniques::{Backend, Technique, mc, oracle, pa, pcss, points, renderer};
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte whatever the technique:

@@ -1,5 +1,6 @@
 //! What the handlers share.
 
+use crate::address::Tally;
 use crate::api::{Problem, ProblemCode};
 use crate::error::StudyFileError;
 use crate::integrity::Integrity;
@@ -20,6 +21,9 @@ use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Duration;
 use tokio::sync::Semaphore;
 
+/// How long a start counts as one of many.
+const STARTS_WITHIN: Duration = Duration::from_secs(600);
+
 pub(crate) struct App {
     pub(crate) store: Store,
     pub(crate) library: Library,
@@ -28,6 +32,8 @@ pub(crate) struct App {
     /// Studies whose files are wrong, by id.
     pub(crate) broken: BTreeMap<String, BrokenStudy>,
     pub(crate) limiter: Limiter,
+    /// Sessions begun, by address.
+    pub(crate) starts: Tally,
     pub(crate) integrity: Integrity,
     pub(crate) presenter: Presenter,
     /// argon2 takes 19 MiB and a core for each password it judges.
@@ -118,6 +124,7 @@ impl App {
             broken,
             studies: studies.into_iter().map(|study| (study.id.clone(), loaded(study))).collect(),
             limiter: Limiter::default(),
+            starts: Tally::new(STARTS_WITHIN),
             integrity: Integrity::default(),
             presenter: Presenter::default(),
             judging: Semaphore::new(2),
@@ -203,6 +210,11 @@ impl App {
     }
 }
 
+/// How long a session of a study may be silent and still hold its place.
+pub(crate) fn idle(study: &StudyDefinition) -> Duration {
+    Duration::from_secs(60 * u64::from(study.idle_minutes))
+}
+
 /// What participants are told of a study that cannot be taken; the console and the log say why.
 fn closed() -> Box<Problem> {
     let detail = "This study can't be taken at the moment. The researchers see the reason in their console.";
@@ -210,11 +222,6 @@ fn closed() -> Box<Problem> {
 }
 
 impl LoadedStudy {
-    /// How long a session may be silent and still hold its place.
-    pub(crate) fn idle(&self) -> Duration {
-        Duration::from_secs(60 * u64::from(self.study.idle_minutes))
-    }
-
     pub(crate) fn stimuli(&self) -> Stimuli {
         self.stimuli.read().unwrap_or_else(PoisonError::into_inner).clone()
     }

@@ -4,7 +4,7 @@ use crate::clock;
 use crate::error::StoreError;
 use crate::files::sha256_hex;
 use crate::first_chain::{self, GENESIS};
-use crate::plans::{PlannedTrial, decided, insert_trials, trial};
+use crate::plans::{PlannedTrial, decided, insert_trials, next_trial, trial};
 use crate::sessions::Session;
 use crate::sqlite::Store;
 use crate::writer::Refused;
@@ -26,6 +26,32 @@ pub struct NewAnswer {
     pub answer: String,
     /// Everything that the page sent, to the byte.
     pub payload: String,
+}
+
+/// What a page sent of one trial.
+#[derive(Clone, Debug)]
+pub struct SentAnswer {
+    /// Index of the trial in its session.
+    pub trial_index: u32,
+    /// All of it, to the byte.
+    pub payload: String,
+    /// Number of trials that the page knows; absent: it asks for none.
+    pub known: Option<u32>,
+}
+
+/// What came of an answer, and where its session stands then.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    /// Whether it is stored.
+    pub appended: Appended,
+    /// The first decided trial without an answer.
+    pub next_trial: Option<u32>,
+    /// Whether answers will decide more trials.
+    pub more: bool,
+    /// The decided trials that the page does not know.
+    pub trials: Vec<PlannedTrial>,
+    /// Indices of the trials that have an answer, where any are told.
+    pub answered: Vec<u32>,
 }
 
 /// Outcome of storing an answer.
@@ -122,8 +148,24 @@ impl Store {
         new: &NewAnswer,
         next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Appended, E> {
-        let (session, new) = (session.clone(), new.clone());
-        self.write_or(move |writer| append(writer, &session, &new, next)).await
+        let NewAnswer { trial_index, answer, payload } = new.clone();
+        let sent = SentAnswer { trial_index, payload, known: None };
+        Ok(self.take_answer(session, sent, |_| Ok(answer), next).await?.appended)
+    }
+
+    /// Takes what a page sent, all in one transaction: `check` says what the answer to the trial is, [`Store::append_answer`] has the rest.
+    ///
+    /// # Errors
+    /// The database fails, or `check` or `next` does; nothing is stored.
+    pub async fn take_answer<E: From<StoreError> + Send + 'static>(
+        &self,
+        session: &Session,
+        sent: SentAnswer,
+        check: impl FnOnce(&kelir_study::Trial) -> Result<String, E> + Send + 'static,
+        next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
+    ) -> Result<Taken, E> {
+        let session = session.clone();
+        self.write_or(move |writer| take(writer, &session, sent, check, next)).await
     }
 
     /// All answers to these versions of a study, in the order they came.
@@ -154,21 +196,43 @@ impl Store {
     }
 }
 
+fn take<E>(
+    writer: &Connection,
+    session: &Session,
+    sent: SentAnswer,
+    check: impl FnOnce(&kelir_study::Trial) -> Result<String, E>,
+    next: impl FnOnce(Progress) -> Result<NextTrials, E>,
+) -> Result<Taken, Refused<E>> {
+    let SentAnswer { trial_index, payload, known } = sent;
+    let session_id = &session.session_id;
+    let Some(planned) = trial(writer, session_id, trial_index)? else {
+        let appended = Appended::NoSuchTrial;
+        return Ok(Taken { appended, next_trial: None, more: false, trials: vec![], answered: vec![] });
+    };
+    let answer = check(&planned.trial).map_err(Refused::Caller)?;
+    let appended = append(writer, session, &planned, &NewAnswer { trial_index, answer, payload }, next)?;
+    let (mut trials, mut answered) = (Vec::new(), Vec::new());
+    if let Some(known) = known {
+        trials = decided(writer, session_id, known)?;
+        answered = crate::sessions::answered(writer, session_id)?;
+    }
+    let (next_trial, more) = (next_trial(writer, session_id)?, more(writer, session_id)?);
+    Ok(Taken { appended, next_trial, more, trials, answered })
+}
+
 fn append<E>(
     writer: &Connection,
     session: &Session,
+    planned: &PlannedTrial,
     new: &NewAnswer,
     next: impl FnOnce(Progress) -> Result<NextTrials, E>,
 ) -> Result<Appended, Refused<E>> {
     if let Some(stored) = stored(writer, &session.session_id, new)? {
         return Ok(stored);
     }
-    let Some(planned) = trial(writer, &session.session_id, new.trial_index)? else {
-        return Ok(Appended::NoSuchTrial);
-    };
     let mut chain = Head::read(writer, &session.study_id)?;
     let now = clock::now();
-    chain.append(writer, session, &planned, new, &now)?;
+    chain.append(writer, session, planned, new, &now)?;
     let mut more = more(writer, &session.session_id)?;
     if more {
         let trials = decided(writer, &session.session_id, 0)?;

@@ -28,6 +28,14 @@ pub enum StoreError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Another process serves the data folder.
+    #[error("{folder}: another kelir serves this data folder ({holder})")]
+    Held {
+        /// The folder.
+        folder: PathBuf,
+        /// Who holds it: process, address and since when.
+        holder: String,
+    },
     /// A stored file is not what its name says.
     #[error("stimulus {sha256}: the stored bytes have another hash; the file is damaged")]
     Damaged {
@@ -133,5 +141,38 @@ impl StoreError {
 
     pub(crate) fn corrupt(what: &'static str, message: impl ToString) -> Self {
         StoreError::Corrupt { what, message: message.to_string() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use rusqlite::{Connection, OpenFlags};
+
+    #[test]
+    fn what_sqlite_says_of_a_file_is_told_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sqlite");
+        let writer = Connection::open(&path).unwrap();
+        writer.execute_batch("CREATE TABLE t (x); PRAGMA max_page_count = 2").unwrap();
+        let trouble =
+            |result: Result<(), rusqlite::Error>| StoreError::from(result.unwrap_err()).as_trouble();
+        let full = writer.execute_batch("INSERT INTO t VALUES (zeroblob(100000))");
+        assert_eq!(trouble(full), Some(Trouble::Full));
+        let reader = Connection::open_with_flags(&path, OpenFlags::SQLITE_OPEN_READ_ONLY).unwrap();
+        assert_eq!(trouble(reader.execute_batch("INSERT INTO t VALUES (1)")), Some(Trouble::ReadOnly));
+        writer.execute_batch("BEGIN IMMEDIATE").unwrap();
+        let other = Connection::open(&path).unwrap();
+        other.busy_timeout(std::time::Duration::ZERO).unwrap();
+        assert_eq!(trouble(other.execute_batch("BEGIN IMMEDIATE")), Some(Trouble::Locked));
+        assert_eq!(trouble(other.execute_batch("SELECT nothing")), None, "a wrong statement is no trouble");
+        let gone = Connection::open(folder.path().join("none").join("a.sqlite")).map(drop);
+        assert_eq!(trouble(gone), Some(Trouble::Failing));
+        let text = folder.path().join("b.sqlite");
+        std::fs::write(&text, "no database at all, however long this text may be".repeat(99)).unwrap();
+        let damaged = Connection::open(&text).unwrap().execute_batch("SELECT * FROM sqlite_schema");
+        assert_eq!(trouble(damaged), Some(Trouble::Damaged));
     }
 }

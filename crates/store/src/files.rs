@@ -1,6 +1,7 @@
 //! Stimulus bytes on disk, named by their SHA-256: written whole or not at all.
 
 use crate::error::StoreError;
+use crate::private;
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
@@ -24,7 +25,7 @@ pub(crate) struct Files {
 
 impl Files {
     pub(crate) fn open(root: PathBuf) -> Result<Files, StoreError> {
-        fs::create_dir_all(&root).map_err(|source| StoreError::File { path: root.clone(), source })?;
+        private::folder(&root)?;
         Ok(Files { root })
     }
 
@@ -41,9 +42,10 @@ impl Files {
         }
         let failed = |path: &Path, source| StoreError::File { path: path.to_owned(), source };
         let folder = path.parent().unwrap_or(&self.root);
-        fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
+        private::folder(folder)?;
         let part = folder.join(format!(".{sha256}.{}.part", uuid::Uuid::new_v4().simple()));
-        let written = File::create(&part)
+        let written = private::writing()
+            .open(&part)
             .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
             .and_then(|()| fs::rename(&part, &path));
         if let Err(source) = written {

@@ -50,9 +50,9 @@ pub(crate) fn pack(
 ) -> Result<Vec<u8>, String> {
     if media_type != ANIMATION {
         let (image, profile) = pixels::decode(bytes)?;
-        let picture = webp(&image.into_rgba8(), profile)?;
-        let size = pixels::of(media_type, bytes, frame)?.size;
-        return joined(size, (0.0, false), vec![0], vec![picture]);
+        let image = image.into_rgba8();
+        let picture = webp(&image, profile)?;
+        return joined(image.dimensions().into(), (0.0, false), vec![0], vec![picture]);
     }
     let manifest = Manifest::read(bytes)?;
     let mut known: HashMap<&str, usize> = HashMap::new();

@@ -2,11 +2,11 @@
 
 use crate::clock;
 use crate::error::StoreError;
-use crate::sessions::{NewSession, Session, SessionKind};
+use crate::sessions::{NewSession, Session, SessionKind, read_session};
 use crate::sqlite::Store;
 use kelir_study::Repeat;
 use kelir_study::visits::{Flag, Visit};
-use rusqlite::{Connection, OptionalExtension};
+use rusqlite::{Connection, params};
 use std::time::Duration;
 
 /// What came of somebody's wish to begin.
@@ -16,6 +16,8 @@ pub enum Begun {
     New(Session),
     /// The session that this person had goes on, with the new token in place of the old one.
     Again(Session),
+    /// The session that the same key began has gone on since.
+    KeyUsed,
     /// Nobody takes part twice, and this person has begun already.
     Refused {
         /// Whether that session is finished.
@@ -28,56 +30,59 @@ impl Begun {
     pub fn session(self) -> Option<Session> {
         match self {
             Begun::New(session) | Begun::Again(session) => Some(session),
-            Begun::Refused { .. } => None,
+            Begun::KeyUsed | Begun::Refused { .. } => None,
         }
     }
 }
 
-/// What the writer made of it.
-pub(crate) enum Settled {
-    /// A new session.
-    New(Box<Session>),
-    /// The session of this id goes on.
-    Again(String),
-    /// None.
-    Refused { is_finished: bool },
-}
-
 /// The session of the same person that comes first to mind: a finished one, else the last with consent, else the last.
-const OF_PERSON: &str = "SELECT session_id, consented_at IS NOT NULL, completed_at IS NOT NULL FROM sessions
-     WHERE study_id = ?1 AND subject_id = ?2 AND session_id <> subject_id AND kind = 'participant'
+const OF_PERSON: &str = "SELECT * FROM sessions WHERE study_id = ?1 AND subject_id = ?2 AND session_id <> subject_id AND kind = 'participant'
      ORDER BY completed_at IS NULL, consented_at IS NULL, session_id DESC LIMIT 1";
 
 /// What the study's policy makes of somebody whose id has a session already; `None`: a new session begins, flagged where need be. In the
 /// transaction that begins it, so that two tabs at once are two visits of one person too.
-pub(crate) fn settle(writer: &Connection, new: &mut NewSession) -> Result<Option<Settled>, StoreError> {
+pub(crate) fn settle(writer: &Connection, new: &mut NewSession) -> Result<Option<Begun>, StoreError> {
+    if let Some(begun) = asked_again(writer, new)? {
+        return Ok(Some(begun));
+    }
     let Some(person) = new.subject_id.as_ref().filter(|_| new.kind == SessionKind::Participant) else {
         return Ok(None);
     };
-    let known = writer
-        .prepare_cached(OF_PERSON)?
-        .query_row([&new.study_id, person], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))
-        .optional()?;
-    let Some((session_id, is_consented, is_finished)): Option<(String, bool, bool)> = known else {
-        return Ok(None);
-    };
+    let mut query = writer.prepare_cached(OF_PERSON)?;
+    let mut known = query.query([&new.study_id, person])?;
+    let Some(known) = known.next()?.map(read_session).transpose()? else { return Ok(None) };
+    let is_finished = known.completed_at.is_some();
     match new.repeat {
         Repeat::Flag => {
             new.flags.push(Flag::RepeatedId.as_str().to_owned());
             Ok(None)
         }
         // Without consent nothing has been seen or said: whoever has the link may begin.
-        _ if !is_consented => go_on(writer, session_id, new).map(Some),
-        Repeat::Resume if !is_finished => go_on(writer, session_id, new).map(Some),
-        Repeat::Resume | Repeat::Refuse => Ok(Some(Settled::Refused { is_finished })),
+        _ if known.consented_at.is_none() => go_on(writer, known, new).map(Some),
+        Repeat::Resume if !is_finished => go_on(writer, known, new).map(Some),
+        Repeat::Resume | Repeat::Refuse => Ok(Some(Begun::Refused { is_finished })),
     }
 }
 
-fn go_on(writer: &Connection, session_id: String, new: &NewSession) -> Result<Settled, StoreError> {
-    let mut renew = writer
-        .prepare_cached("UPDATE sessions SET token_hash = ?2, last_seen_at = ?3 WHERE session_id = ?1")?;
-    renew.execute([&session_id, &new.token_hash, &clock::now()])?;
-    Ok(Settled::Again(session_id))
+/// The session that the same wish began: whoever asks for it again has not heard of it, or of no consent to it.
+fn asked_again(writer: &Connection, new: &NewSession) -> Result<Option<Begun>, StoreError> {
+    let Some(key) = &new.start_key else { return Ok(None) };
+    let mut query = writer.prepare_cached("SELECT * FROM sessions WHERE study_id = ?1 AND start_key = ?2")?;
+    let mut known = query.query([&new.study_id, key])?;
+    let Some(known) = known.next()?.map(read_session).transpose()? else { return Ok(None) };
+    if known.consented_at.is_some() {
+        return Ok(Some(Begun::KeyUsed));
+    }
+    go_on(writer, known, new).map(Some)
+}
+
+fn go_on(writer: &Connection, mut known: Session, new: &NewSession) -> Result<Begun, StoreError> {
+    (known.token_hash, known.last_seen_at) = (new.token_hash.clone(), clock::now());
+    writer.execute(
+        "UPDATE sessions SET token_hash = ?2, last_seen_at = ?3 WHERE session_id = ?1",
+        params![known.session_id, known.token_hash, known.last_seen_at],
+    )?;
+    Ok(Begun::Again(known))
 }
 
 impl Store {
@@ -93,17 +98,15 @@ impl Store {
     ) -> Result<Vec<Visit>, StoreError> {
         let study_id = study_id.to_owned();
         let versions = serde_json::to_string(versions).map_err(|e| StoreError::corrupt("versions", e))?;
-        self.readers
-            .read(move |connection| {
-                let mut statement = connection.prepare_cached(
-                    "SELECT session_id, subject_id, kind, flags, consented_at, completed_at, completed_at IS NULL AND last_seen_at > ?3
-                     FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id",
-                )?;
-                let since = clock::before_now(idle);
-                let visits = statement.query_map([study_id, versions, since], read_visit)?;
-                Ok(visits.collect::<Result<Vec<Visit>, _>>()?)
-            })
-            .await
+        let read = self.readers.read(move |connection| {
+            let mut statement = connection.prepare(
+                "SELECT session_id, subject_id, kind, flags, consented_at, completed_at, completed_at IS NULL AND last_seen_at > ?3
+                 FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id",
+            )?;
+            let visits = statement.query_map((study_id, versions, clock::before_now(idle)), read_visit)?;
+            Ok(visits.collect::<Result<Vec<Visit>, _>>()?)
+        });
+        read.await
     }
 }
 

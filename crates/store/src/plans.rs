@@ -142,6 +142,12 @@ pub(crate) fn decided(
     Ok(trials)
 }
 
+/// Takes the plan of a session away that has no consent yet; the database refuses for any other.
+pub(crate) fn forget_trials(writer: &Connection, session_id: &str) -> Result<(), StoreError> {
+    writer.execute("DELETE FROM session_trials WHERE session_id = ?1", [session_id])?;
+    Ok(())
+}
+
 /// Appends trials, decided now from the study's answers up to `after_seq`.
 pub(crate) fn insert_trials(
     writer: &Connection,

@@ -2,17 +2,15 @@
 
 use crate::clock;
 use crate::error::StoreError;
-use crate::persons::{Begun, Settled, settle};
-use crate::plans::{PlannedSession, insert_trials};
+use crate::persons::{Begun, settle};
+use crate::plans::{PlannedSession, forget_trials, insert_trials};
+use crate::slots::Slots;
 use crate::sqlite::Store;
 use crate::writer::Refused;
 use kelir_study::Repeat;
-use kelir_study::plan::lowest_free_slot;
 use rusqlite::{Connection, params};
 use serde::Serialize;
 use serde_json::{Value, json};
-use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
 use std::time::Duration;
 use utoipa::ToSchema;
 
@@ -128,14 +126,7 @@ impl Store {
         new: NewSession,
         plan: impl FnOnce(u32) -> Result<PlannedSession, E> + Send + 'static,
     ) -> Result<Begun, E> {
-        match self.write_or(move |writer| create(writer, new, plan)).await? {
-            Settled::New(session) => Ok(Begun::New(*session)),
-            Settled::Refused { is_finished } => Ok(Begun::Refused { is_finished }),
-            Settled::Again(session_id) => {
-                let gone = || StoreError::corrupt("sessions", "a session is gone");
-                Ok(Begun::Again(self.session(&session_id).await?.ok_or_else(gone)?))
-            }
-        }
+        self.write_or(move |writer| create(writer, new, plan)).await
     }
 
     /// The session with this id; `None` for an unknown one.
@@ -143,11 +134,8 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn session(&self, session_id: &str) -> Result<Option<Session>, StoreError> {
-        let row = sqlx::query("SELECT * FROM sessions WHERE session_id = $1")
-            .bind(session_id)
-            .fetch_optional(&self.reader)
-            .await?;
-        row.as_ref().map(read_session).transpose()
+        let session_id = session_id.to_owned();
+        self.readers.read(move |connection| session(connection, &session_id)).await
     }
 
     /// All sessions of these versions of a study, oldest first.
@@ -156,14 +144,20 @@ impl Store {
     /// The database cannot be read.
     pub async fn sessions(&self, study_id: &str, versions: &[String]) -> Result<Vec<Session>, StoreError> {
         let versions = serde_json::to_string(versions).map_err(|e| StoreError::corrupt("versions", e))?;
-        let rows = sqlx::query(
-            "SELECT * FROM sessions WHERE study_id = $1 AND version IN (SELECT value FROM json_each($2)) ORDER BY session_id",
-        )
-        .bind(study_id)
-        .bind(versions)
-        .fetch_all(&self.reader)
-        .await?;
-        rows.iter().map(read_session).collect()
+        let study_id = study_id.to_owned();
+        self.readers
+            .read(move |connection| {
+                let mut query = connection.prepare_cached(
+                    "SELECT * FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id",
+                )?;
+                let mut rows = query.query([study_id, versions])?;
+                let mut sessions = Vec::new();
+                while let Some(row) = rows.next()? {
+                    sessions.push(read_session(row)?);
+                }
+                Ok(sessions)
+            })
+            .await
     }
 
     /// Notes that the session is alive, which keeps its slot.
@@ -181,21 +175,20 @@ impl Store {
         .await
     }
 
-    /// Notes that the participant agreed to the text of this hash; the first time counts.
+    /// Notes that the participant agreed to the text of this hash; the first time counts. Nothing has been shown before that: who was silent for
+    /// so long that somebody else has their slot gets a new one, with the plan that `plan` has for it.
     ///
     /// # Errors
-    /// The database fails.
-    pub async fn consent(&self, session_id: &str, consent_sha256: &str) -> Result<(), StoreError> {
-        let [session_id, consent_sha256] = [session_id, consent_sha256].map(str::to_owned);
-        self.write(move |writer| {
-            let mut consent = writer.prepare_cached(
-                "UPDATE sessions SET consent_sha256 = CASE WHEN consented_at IS NULL THEN ?3 ELSE consent_sha256 END,
-                 consented_at = COALESCE(consented_at, ?2), last_seen_at = ?2 WHERE session_id = ?1",
-            )?;
-            consent.execute(params![session_id, clock::now(), consent_sha256])?;
-            Ok(())
-        })
-        .await
+    /// The database fails or has no such session, or `plan` fails; nothing is stored.
+    pub async fn consent<E: From<StoreError> + Send + 'static>(
+        &self,
+        session: &Session,
+        consent_sha256: &str,
+        idle: Duration,
+        plan: impl FnOnce(u32) -> Result<PlannedSession, E> + Send + 'static,
+    ) -> Result<Session, E> {
+        let (session_id, consent_sha256) = (session.session_id.clone(), consent_sha256.to_owned());
+        self.write_or(move |writer| consent(writer, &session_id, &consent_sha256, idle, plan)).await
     }
 
     /// Indices of the trials that have an answer, ascending.
@@ -259,21 +252,18 @@ fn create<E>(
     writer: &Connection,
     mut new: NewSession,
     plan: impl FnOnce(u32) -> Result<PlannedSession, E>,
-) -> Result<Settled, Refused<E>> {
+) -> Result<Begun, Refused<E>> {
     if let Some(settled) = settle(writer, &mut new)? {
         return Ok(settled);
     }
-    let mut held = writer.prepare_cached(
-        "SELECT slot FROM sessions WHERE study_id = ?1 AND version = ?2 AND kind = 'participant'
-             AND (completed_at IS NOT NULL OR last_seen_at > ?3)",
-    )?;
-    let held = held
-        .query_map([&new.study_id, &new.version, &clock::before_now(new.idle)], |row| row.get(0))?
-        .collect::<Result<Vec<u32>, _>>()?;
-    let slot = lowest_free_slot(held);
+    let slots = Slots { writer, study_id: &new.study_id, version: &new.version, idle: new.idle };
+    let slot = slots.lowest_free()?;
     let planned = plan(slot).map_err(Refused::Caller)?;
-    let session_id = uuid::Uuid::now_v7().to_string();
     let now = clock::now();
+    if new.kind == SessionKind::Participant {
+        slots.take(slot, &now)?;
+    }
+    let session_id = uuid::Uuid::now_v7().to_string();
     let session = Session {
         subject_id: new.subject_id.unwrap_or_else(|| session_id.clone()),
         session_id,
@@ -299,7 +289,48 @@ fn create<E>(
     };
     insert_session(writer, &session)?;
     insert_trials(writer, &session.session_id, &planned.next.trials, &session.created_at, 0)?;
-    Ok(Settled::New(Box::new(session)))
+    Ok(Begun::New(session))
+}
+
+fn consent<E>(
+    writer: &Connection,
+    session_id: &str,
+    consent_sha256: &str,
+    idle: Duration,
+    plan: impl FnOnce(u32) -> Result<PlannedSession, E>,
+) -> Result<Session, Refused<E>> {
+    let gone = || StoreError::corrupt("session", "there is none of this id");
+    let mut known = session(writer, session_id)?.ok_or_else(gone)?;
+    let now = clock::now();
+    if known.consented_at.is_none() {
+        let slots = Slots { writer, study_id: &known.study_id, version: &known.version, idle };
+        if known.kind == SessionKind::Participant && slots.is_held_beside(known.slot, session_id)? {
+            let slot = slots.lowest_free()?;
+            let planned = plan(slot).map_err(Refused::Caller)?;
+            slots.take(slot, &now)?;
+            forget_trials(writer, session_id)?;
+            insert_trials(writer, session_id, &planned.next.trials, &now, 0)?;
+            (known.slot, known.plan_seed, known.more) = (slot, planned.seed, planned.next.more);
+        }
+        known.consented_at = Some(now.clone());
+        known.consent_sha256 = Some(consent_sha256.to_owned());
+    }
+    known.last_seen_at = now;
+    let mut consent = writer.prepare_cached(
+        "UPDATE sessions SET slot = ?2, plan_seed = ?3, more = ?4, consented_at = ?5, consent_sha256 = ?6, last_seen_at = ?7
+         WHERE session_id = ?1",
+    )?;
+    let Session { slot, plan_seed, more, consented_at, consent_sha256, last_seen_at, .. } = &known;
+    consent.execute(params![
+        session_id,
+        slot,
+        plan_seed,
+        more,
+        consented_at,
+        consent_sha256,
+        last_seen_at
+    ])?;
+    Ok(known)
 }
 
 fn complete(writer: &Connection, session_id: &str, code: &str) -> Result<Completed, StoreError> {
@@ -321,7 +352,7 @@ fn complete(writer: &Connection, session_id: &str, code: &str) -> Result<Complet
 }
 
 /// Indices of the trials of a session that have an answer, ascending.
-fn answered(connection: &Connection, session_id: &str) -> Result<Vec<u32>, StoreError> {
+pub(crate) fn answered(connection: &Connection, session_id: &str) -> Result<Vec<u32>, StoreError> {
     let mut query = connection.prepare_cached(
         "SELECT trial_index FROM responses WHERE session_id = ?1
          UNION SELECT trial_index FROM answers WHERE session_id = ?1 ORDER BY trial_index",
@@ -361,33 +392,40 @@ pub(crate) fn insert_session(writer: &Connection, session: &Session) -> Result<(
     Ok(())
 }
 
-fn read_session(row: &SqliteRow) -> Result<Session, StoreError> {
+/// The session with this id, as it stands in this transaction.
+pub(crate) fn session(connection: &Connection, session_id: &str) -> Result<Option<Session>, StoreError> {
+    let mut query = connection.prepare_cached("SELECT * FROM sessions WHERE session_id = ?1")?;
+    let mut rows = query.query([session_id])?;
+    rows.next()?.map(read_session).transpose()
+}
+
+pub(crate) fn read_session(row: &rusqlite::Row<'_>) -> Result<Session, StoreError> {
     let json = |column: &'static str| -> Result<Value, StoreError> {
-        let text: String = row.try_get(column)?;
+        let text: String = row.get(column)?;
         serde_json::from_str(&text).map_err(|e| StoreError::corrupt(column, e))
     };
     Ok(Session {
-        session_id: row.try_get("session_id")?,
-        study_id: row.try_get("study_id")?,
-        version: row.try_get("version")?,
-        file_hash: row.try_get("file_hash")?,
-        subject_id: row.try_get("subject_id")?,
-        token_hash: row.try_get("token_hash")?,
-        slot: row.try_get("slot")?,
-        plan_seed: row.try_get("plan_seed")?,
-        more: row.try_get("more")?,
-        kind: serde_json::from_value(Value::String(row.try_get("kind")?))
+        session_id: row.get("session_id")?,
+        study_id: row.get("study_id")?,
+        version: row.get("version")?,
+        file_hash: row.get("file_hash")?,
+        subject_id: row.get("subject_id")?,
+        token_hash: row.get("token_hash")?,
+        slot: row.get("slot")?,
+        plan_seed: row.get("plan_seed")?,
+        more: row.get("more")?,
+        kind: serde_json::from_value(Value::String(row.get("kind")?))
             .map_err(|e| StoreError::corrupt("kind", e))?,
         flags: serde_json::from_value(json("flags")?).map_err(|e| StoreError::corrupt("flags", e))?,
-        start_key: row.try_get("start_key")?,
-        user_agent: row.try_get("user_agent")?,
+        start_key: row.get("start_key")?,
+        user_agent: row.get("user_agent")?,
         params: json("params")?,
         display: json("display")?,
-        created_at: row.try_get("created_at")?,
-        last_seen_at: row.try_get("last_seen_at")?,
-        consented_at: row.try_get("consented_at")?,
-        consent_sha256: row.try_get("consent_sha256")?,
-        completed_at: row.try_get("completed_at")?,
-        completion_code: row.try_get("completion_code")?,
+        created_at: row.get("created_at")?,
+        last_seen_at: row.get("last_seen_at")?,
+        consented_at: row.get("consented_at")?,
+        consent_sha256: row.get("consent_sha256")?,
+        completed_at: row.get("completed_at")?,
+        completion_code: row.get("completion_code")?,
     })
 }

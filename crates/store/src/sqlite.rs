@@ -3,6 +3,7 @@
 use crate::error::StoreError;
 use crate::files::Files;
 use crate::layout;
+use crate::private;
 use crate::readers::Readers;
 use crate::stimuli::blocking;
 use crate::writer::{Refused, Writer};
@@ -34,8 +35,8 @@ impl Store {
     /// # Errors
     /// The folder or the database cannot be opened, was written by a newer version, or holds what cannot be brought over; it is as it was.
     pub async fn open(folder: &Path) -> Result<Store, StoreError> {
-        std::fs::create_dir_all(folder)
-            .map_err(|source| StoreError::File { path: folder.to_owned(), source })?;
+        private::folder(folder)?;
+        private::close(folder);
         let files = Files::open(folder.join("stimuli"))?;
         let path = folder.join(DATABASE);
         let (database, stimuli) = (path.clone(), files.clone());
@@ -68,14 +69,6 @@ impl Store {
         self.writer.run(job).await
     }
 
-    /// Whether the database answers.
-    ///
-    /// # Errors
-    /// It does not.
-    pub async fn ping(&self) -> Result<(), StoreError> {
-        self.readers.read(|connection| Ok(connection.execute_batch("SELECT 1")?)).await
-    }
-
     /// The writer's `synchronous` (2 is FULL) and `foreign_keys` (1 is on).
     ///
     /// # Errors
@@ -99,6 +92,8 @@ impl Store {
 
 /// A connection that writes.
 fn connect(path: &Path) -> Result<Connection, StoreError> {
+    // SQLite gives the files beside it the rights of this one. It opens a folder that is not to be written to, too.
+    drop(private::writing().open(path));
     let connection = Connection::open(path)?;
     connection.busy_timeout(BUSY)?;
     connection.pragma_update(None, "journal_mode", "wal")?;

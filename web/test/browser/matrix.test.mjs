@@ -1,9 +1,11 @@
 // No dead ends: whatever browser, storage, clock and network do, a visit ends with the code or with a sentence that says what to do.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { material } from "../mock-study.ts";
+import { material, study } from "../mock-study.ts";
+import { startMock } from "../mock-server.ts";
+import { hasFirefox, launchFirefox } from "./firefox.mjs";
 import { HURRY, troubles } from "./troubles.mjs";
-import { visit } from "./visit.mjs";
+import { bundle, visit } from "./visit.mjs";
 
 /** Two trials are a study. */
 const short = () => {
@@ -39,3 +41,32 @@ for (const { name, spoil = "", fault = () => () => null, says, sessions } of tro
     v.problems.length = 0; // what went wrong is said in the console too
   });
 }
+
+/** What Firefox is likely to take otherwise than Chromium. */
+const IN_FIREFOX = /blocked|no storage|full|forgets|cut twice|stalls for ever|half an|without PUT|portal amid|refused twice|jumps back|tenths|hidden and shown|newer functions|before its time/;
+
+test("Firefox goes through its share of these", { skip: !hasFirefox }, async (t) => {
+  const firefox = await launchFirefox();
+  t.after(() => firefox.close());
+  const look = () =>
+    firefox.evaluate((steps) => ({
+      text: document.body?.innerText ?? "",
+      code: document.querySelector('[data-testid="completion-code"]') !== null,
+      step: [...document.querySelectorAll(steps)].find((element) => getComputedStyle(element).visibility === "visible" && element.getAttribute("aria-disabled") !== "true")?.dataset.testid ?? null,
+    }), STEPS);
+  for (const { name, spoil = "", fault = () => () => null, says } of troubles.filter(({ name }) => IN_FIREFOX.test(name))) {
+    await t.test(name, async () => {
+      const mock = await startMock({ dist: bundle, stuff: short(), spoil: HURRY + spoil, fault: fault() });
+      await firefox.goto(`${mock.url}/study/${study.id}`);
+      let seen = await look();
+      for (let steps = 0; steps < 200 && !seen.code && !says?.test(seen.text); steps++) {
+        if (seen.step !== null) await firefox.click(seen.step).catch(() => undefined);
+        await new Promise((resolve) => setTimeout(resolve, 100));
+        seen = await look();
+      }
+      await mock.close();
+      if (says === undefined) assert.ok(seen.code, seen.text);
+      else assert.match(seen.text, says);
+    });
+  }
+});

@@ -7,6 +7,7 @@ use crate::output::Figures;
 
 mod accuracy;
 mod frames;
+mod load;
 mod numerics;
 mod rows;
 
@@ -43,6 +44,9 @@ pub enum Command {
         #[command(flatten)]
         figures: Figures,
     },
+    /// Durable answers a second, against Express and better-sqlite3 that store the same rows; how long a thousand people wait; whether starts and
+    /// answers slow down as sessions gather.
+    Load(load::Args),
     /// How long judging a million answers takes, from the database to the researcher's page.
     Rows(rows::Args),
 }
@@ -57,6 +61,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Numerics { stats: true, figures, .. } => numerics::statistics(&figures),
         Command::Numerics { curves: true, figures, .. } => numerics::curves(&figures),
         Command::Numerics { most, figures, .. } => numerics::renderer(most, &figures),
+        Command::Load(args) => load::run(&args),
         Command::Rows(args) => rows::run(&args),
     }
 }

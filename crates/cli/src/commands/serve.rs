@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 use kelir_server::{Handle, Making, PasswordSource, RenderMaker, Server, ServerConfig, TrustedProxies};
+use kelir_store::FolderLock;
 
 use crate::log;
 use crate::output::print;
@@ -44,6 +45,8 @@ pub fn run(args: Args) -> Result<()> {
 }
 
 async fn serve(args: Args) -> Result<()> {
+    // Held until this returns.
+    let _lock = FolderLock::take(&args.data, &format!("http://{}", args.listen))?;
     let trusted_proxies = trusted_proxies(&args.trusted_proxy).map_err(bad_input)?;
     let bar = progress::bar(0, "stimuli");
     let config = ServerConfig {

@@ -14,6 +14,8 @@ use utoipa::ToSchema;
 pub(crate) const PROBLEM_JSON: &str = "application/problem+json";
 /// An answer names so many wrong fields and no more.
 const MOST_ERRORS: usize = 100;
+/// When to ask again where the disk or the database is the trouble.
+const RETRY_AFTER_S: u64 = 10;
 
 worded! {
     /// What kind of problem it is.
@@ -56,6 +58,8 @@ worded! {
         InvalidField = "invalid_field",
         /// Something is wrong on the server; its log has the reason.
         Internal = "internal",
+        /// The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again.
+        Unavailable = "unavailable",
         /// The server is starting, or the study's images are still being made; `Retry-After` says when to ask again.
         NotReady = "not_ready",
         /// The study cannot be taken at the moment; researchers see the reason in the console.
@@ -85,13 +89,15 @@ impl ProblemCode {
             ProblemCode::NotJson => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             ProblemCode::InvalidField => StatusCode::UNPROCESSABLE_ENTITY,
             ProblemCode::Internal => StatusCode::INTERNAL_SERVER_ERROR,
-            ProblemCode::NotReady | ProblemCode::StimuliFailed => StatusCode::SERVICE_UNAVAILABLE,
+            ProblemCode::Unavailable | ProblemCode::NotReady | ProblemCode::StimuliFailed => {
+                StatusCode::SERVICE_UNAVAILABLE
+            }
         }
     }
 
     /// Whether answers of this code say in `Retry-After` when to ask again.
     pub fn says_when(self) -> bool {
-        matches!(self, ProblemCode::NotReady)
+        matches!(self, ProblemCode::Unavailable | ProblemCode::NotReady)
     }
 }
 
@@ -213,7 +219,10 @@ impl Problem {
 
 impl From<StoreError> for Box<Problem> {
     fn from(error: StoreError) -> Self {
-        Problem::internal(error)
+        let Some(trouble) = error.as_trouble() else { return Problem::internal(error) };
+        tracing::error!("{error}");
+        let detail = format!("{} Please try again shortly.", trouble.sentence());
+        Problem::new(ProblemCode::Unavailable, detail).retry_after(RETRY_AFTER_S)
     }
 }
 
@@ -235,5 +244,27 @@ impl IntoResponse for Problem {
 impl IntoResponse for Box<Problem> {
     fn into_response(self) -> Response {
         (*self).into_response()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kelir_store::Trouble;
+
+    #[test]
+    fn trouble_with_the_disk_is_told_as_such_and_passes() {
+        for trouble in [Trouble::Full, Trouble::Locked, Trouble::ReadOnly, Trouble::Failing, Trouble::Damaged]
+        {
+            let error = StoreError::Trouble { trouble, message: "a path of the server".to_owned() };
+            let problem = Box::<Problem>::from(error);
+            assert!(problem.detail.starts_with(trouble.sentence()), "{}", problem.detail);
+            assert!(!problem.detail.contains("path"), "{}", problem.detail);
+            let response = problem.into_response();
+            assert_eq!(response.status(), StatusCode::SERVICE_UNAVAILABLE);
+            assert_eq!(response.headers()[header::RETRY_AFTER], "10");
+        }
+        let other = Box::<Problem>::from(StoreError::Migrate("x".to_owned()));
+        assert_eq!(other.into_response().status(), StatusCode::INTERNAL_SERVER_ERROR);
     }
 }

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use utoipa::openapi::schema::{AllOfBuilder, ObjectBuilder, Type};
 use utoipa::openapi::{ContentBuilder, HeaderBuilder, Ref, RefOr, Response, ResponseBuilder};
 
-/// The refusals of an operation as its documentation lists them: each code at its status. `internal` is everybody's.
+/// The refusals of an operation as its documentation lists them: each code at its status. `internal` and `unavailable` are everybody's.
 pub(crate) fn responses(codes: &[ProblemCode]) -> BTreeMap<String, RefOr<Response>> {
     let mut by_status = BTreeMap::<u16, Vec<ProblemCode>>::new();
-    for code in codes.iter().copied().chain([ProblemCode::Internal]) {
+    for code in codes.iter().copied().chain([ProblemCode::Internal, ProblemCode::Unavailable]) {
         by_status.entry(code.status().as_u16()).or_default().push(code);
     }
     let response = |codes: Vec<ProblemCode>| {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 refusals!(Health:);
 
-/// Whether the server answers and its database can be read.
+/// Whether the server answers and can store: something is written, synced and taken away again.
 ///
 /// `degraded` means that something stored is damaged and people can take part all the same; researchers are told what.
 #[utoipa::path(
@@ -19,7 +19,7 @@ refusals!(Health:);
     responses((status = OK, description = "`ok` or `degraded`", body = String), Health)
 )]
 pub(crate) async fn get_health(State(app): State<Arc<App>>) -> Result<Response, Box<Problem>> {
-    app.store.ping().await?;
+    app.store.check().await?;
     let word = if app.integrity.faults().is_empty() { "ok\n" } else { "degraded\n" };
     Ok(([(header::CACHE_CONTROL, "no-store")], word).into_response())
 }

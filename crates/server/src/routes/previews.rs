@@ -198,7 +198,6 @@ fn state_of(id: &str, preview: &Preview) -> Untold {
         language: preview.language.clone(),
         status,
         named: false,
-        language: study.language.clone(),
         consented: preview.consented,
         more: preview.more,
         most_trials: if preview.more { study.most_trials() } else { preview.trials.len() },

@@ -2,11 +2,12 @@
 
 use super::studies::{StudyPath, told};
 use super::{Answered, Fresh, links, previews};
+use crate::address::ClientAddress;
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, Trial, refusals,
 };
-use crate::app::App;
+use crate::app::{App, idle};
 use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
 use crate::links::{Visit, is_of_link};
 use crate::making::StimulusMap;
@@ -15,14 +16,19 @@ use crate::presenting::Whose;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{
-    Appended, Begun, Completed, NewAnswer, NextTrials, PlannedSession, PlannedTrial, Progress, Session,
+    Appended, Begun, Completed, NextTrials, PlannedSession, PlannedTrial, Progress, SentAnswer, Session,
     SessionKind, StimulusHashes, sha256_hex,
 };
+use kelir_study::visits::Flag;
 use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Instant;
 use utoipa::IntoParams;
+
+/// Sessions that are begun at one address within ten minutes before the next is flagged: a class in a laboratory is fewer.
+const MOST_STARTS: usize = 30;
 
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Path)]
@@ -42,20 +48,25 @@ pub(crate) struct TrialPath {
     pub(super) trial_index: String,
 }
 
-refusals!(NotCreated: Unauthorized, LinkRefused, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
+refusals!(NotCreated: InvalidParameter, Unauthorized, LinkRefused, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
 
 /// Begin a session. The answer holds its token, which is told this once.
 ///
 /// Where somebody with the same id has begun before, the study file says what happens: another session begins, flagged; the one that is there
 /// goes on, with a new token in place of the old one; or none does.
+///
+/// A reply can be lost: the same `Idempotency-Key` gives the session that it began again, with a new token in place of the old one, while it has
+/// no consent yet; then `already_begun`.
 #[utoipa::path(
-    post, path = "/api/v1/studies/{study}/sessions", tag = "participants", params(StudyPath), request_body = NewSession,
+    post, path = "/api/v1/studies/{study}/sessions", tag = "participants", request_body = NewSession,
+    params(StudyPath, ("Idempotency-Key" = Option<String>, Header, description = "The browser's own key of its wish to begin, 1 to 255 visible ASCII characters.")),
     responses((status = CREATED, description = "The session.", body = CreatedSession), NotCreated)
 )]
 pub(crate) async fn create_session(
     State(app): State<Arc<App>>,
     Parameters(StudyPath { study }): Parameters<StudyPath>,
     SignedIn(researcher): SignedIn,
+    ClientAddress(address): ClientAddress,
     headers: HeaderMap,
     Body(new): Body<NewSession>,
 ) -> Result<(StatusCode, Fresh<CreatedSession>), Box<Problem>> {
@@ -77,6 +88,8 @@ pub(crate) async fn create_session(
         return Err(Problem::new(ProblemCode::Unauthorized, detail));
     }
     let person = loaded.study.session.identify(&params).map_err(Problem::refused_id)?;
+    let is_one_of_many =
+        kind == SessionKind::Participant && app.starts.note(address, Instant::now()) > MOST_STARTS;
     let new = kelir_store::NewSession {
         study_id: loaded.study.id.clone(),
         version: served.version.clone(),
@@ -84,23 +97,24 @@ pub(crate) async fn create_session(
         subject_id: person.map(|(_, id)| id.to_owned()),
         token_hash: sha256_hex(token.as_bytes()),
         kind,
-        flags: Vec::new(),
+        flags: is_one_of_many.then(|| Flag::ManyStarts.as_str().to_owned()).into_iter().collect(),
         repeat: loaded.study.session.repeat,
-        start_key: None,
+        start_key: start_key(&headers)?,
         user_agent: user_agent(&headers),
         params: params.into_iter().filter(|(name, _)| !is_pilot || !is_of_link(name)).collect(),
         display: new.display.unwrap_or_default().into(),
-        idle: loaded.idle(),
+        idle: idle(&loaded.study),
     };
     let study = loaded.study.clone();
-    let plan = move |slot| {
-        let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&study, slot);
-        let next = NextTrials { trials: planned(&served.stimuli, trials)?, more };
-        Ok::<_, Box<Problem>>(PlannedSession { seed, next })
-    };
+    let plan = move |slot| plan_of(&study, &served.stimuli, slot);
     let session = match app.store.create_session(new, plan).await? {
         Begun::New(session) | Begun::Again(session) => session,
         Begun::Refused { is_finished } => return Err(taken(is_finished)),
+        Begun::KeyUsed => {
+            let detail =
+                "The session that this key began has consent and goes on with the token that was told.";
+            return Err(Problem::new(ProblemCode::AlreadyBegun, detail));
+        }
     };
     let state = state_of(&app, &session).await?;
     Ok((StatusCode::CREATED, Fresh(CreatedSession { state, token })))
@@ -116,11 +130,34 @@ fn taken(is_finished: bool) -> Box<Problem> {
     Problem::new(ProblemCode::AlreadyBegun, detail)
 }
 
+/// The header of a browser's own key of its wish to begin.
+const IDEMPOTENCY_KEY: &str = "Idempotency-Key";
+
+fn start_key(headers: &HeaderMap) -> Result<Option<String>, Box<Problem>> {
+    let Some(sent) = headers.get(IDEMPOTENCY_KEY) else { return Ok(None) };
+    let bytes = sent.as_bytes();
+    if (1..=255).contains(&bytes.len()) && bytes.iter().all(u8::is_ascii_graphic) {
+        return Ok(Some(String::from_utf8_lossy(bytes).into_owned()));
+    }
+    let text = String::from_utf8_lossy(bytes);
+    Err(Problem::parameter(IDEMPOTENCY_KEY, &text, "must be 1 to 255 visible ASCII characters"))
+}
+
 /// What the browser calls itself, at most 512 characters of it.
 fn user_agent(headers: &HeaderMap) -> Option<String> {
     let sent = String::from_utf8_lossy(headers.get(header::USER_AGENT)?.as_bytes());
     Some(sent.chars().filter(|c| !c.is_control()).take(512).collect())
         .filter(|name: &String| !name.is_empty())
+}
+
+/// The plan of a slot with its stimuli filled in.
+fn plan_of(
+    study: &StudyDefinition,
+    stimuli: &StimulusMap,
+    slot: u32,
+) -> Result<PlannedSession, Box<Problem>> {
+    let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(study, slot);
+    Ok(PlannedSession { seed, next: NextTrials { trials: planned(stimuli, trials)?, more } })
 }
 
 /// Trials with their stimuli filled in.
@@ -164,12 +201,12 @@ pub(crate) async fn give_consent(
     Participant(session): Participant,
     State(app): State<Arc<App>>,
 ) -> Answered<SessionState> {
-    let study = app.begun(&session).await?.study;
+    let crate::app::Begun { study, stimuli } = app.begun(&session).await?;
     // The text that was read, in the language in which it was.
     let text = study.texts_in(language(&study, &session)).consent.join("\n\n");
-    app.store.consent(&session.session_id, &sha256_hex(text.as_bytes())).await?;
-    let session = app.store.session(&session.session_id).await?;
-    let session = session.ok_or_else(|| Problem::internal("a session is gone"))?;
+    let idle = idle(&study);
+    let plan = move |slot| plan_of(&study, &stimuli, slot);
+    let session = app.store.consent(&session, &sha256_hex(text.as_bytes()), idle, plan).await?;
     Ok(Fresh(state_of(&app, &session).await?))
 }
 
@@ -194,18 +231,22 @@ pub(crate) async fn put_answer(
     let no_trial = || Problem::not_found("trial");
     // Plain digits alone: "+1" and "01" are other addresses, not other names of a trial.
     let index = trial_index.parse().ok().filter(|i: &u32| i.to_string() == trial_index);
-    let trial =
-        app.store.trial(&session.session_id, index.ok_or_else(no_trial)?).await?.ok_or_else(no_trial)?.trial;
-    if session.consented_at.is_none() {
-        return Err(Problem::new(ProblemCode::NoConsent, "An answer can be stored only after consent."));
-    }
-    let checked = trial.trial.rules().check(&body.value);
-    let answer = checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))?.answer;
-    let new = NewAnswer { trial_index: trial.trial_index, answer, payload: body.text };
+    let known = known.known.map(|known| u32::try_from(known).unwrap_or(u32::MAX));
+    let Object { value, text } = body;
+    let sent = SentAnswer { trial_index: index.ok_or_else(no_trial)?, payload: text, known };
+    let has_consent = session.consented_at.is_some();
+    let check = move |trial: &kelir_study::Trial| {
+        if !has_consent {
+            return Err(Problem::new(ProblemCode::NoConsent, "An answer can be stored only after consent."));
+        }
+        let checked = trial.trial.rules().check(&value);
+        Ok(checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))?.answer)
+    };
     let begun = app.begun(&session).await?;
     let (deciding, slot) = (begun.clone(), session.slot);
     let next = move |progress: Progress| next_of(&deciding, slot, &progress);
-    match app.store.append_answer(&session, &new, next).await? {
+    let taken = app.store.take_answer(&session, sent, check, next).await?;
+    match taken.appended {
         Appended::Stored | Appended::Same => {}
         Appended::Different(stored) => {
             let detail = "This trial has an answer already; the first one stands.";
@@ -215,17 +256,11 @@ pub(crate) async fn put_answer(
         }
         Appended::NoSuchTrial => return Err(no_trial()),
     }
-    // A plan that is whole stays so.
-    let more =
-        session.more && app.store.session(&session.session_id).await?.is_some_and(|session| session.more);
     let mut trials = Vec::new();
-    if let Some(known) = known.known {
-        let answered = app.store.answered(&session.session_id).await?;
-        let from = u32::try_from(known).unwrap_or(u32::MAX);
-        let decided = app.store.trials_from(&session.session_id, from).await?;
-        trials = trials_of(&app, Whose::of(&session), &begun.study, &decided, &answered).await?;
+    if !taken.trials.is_empty() {
+        trials = trials_of(&app, Whose::of(&session), &begun.study, &taken.trials, &taken.answered).await?;
     }
-    let next_trial = app.store.next_trial(&session.session_id).await?;
+    let (next_trial, more) = (taken.next_trial, taken.more);
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
 }
 

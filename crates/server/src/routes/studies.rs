@@ -2,7 +2,7 @@
 
 use super::{Answered, Fresh};
 use crate::api::{ListQuery, Progress, Study, StudyList, StudyStatus, StudySummary, VersionList, refusals};
-use crate::app::{App, BrokenStudy, LoadedStudy, Stimuli};
+use crate::app::{App, BrokenStudy, LoadedStudy, Stimuli, idle};
 use crate::extract::{Parameters, Query, Researcher};
 use axum::extract::State;
 use kelir_report::Participants;
@@ -110,7 +110,7 @@ async fn summary(app: &App, loaded: &LoadedStudy) -> Result<StudySummary, StoreE
         id: study.id.clone(),
         title: study.title.clone(),
         participants: match &version {
-            Some(version) => app.store.version_counts(&study.id, loaded.idle()).await?.remove(version),
+            Some(version) => app.store.version_counts(&study.id, idle(&loaded.study)).await?.remove(version),
             None => None,
         }
         .map(|gathered| crate::results::counted(gathered.participants))

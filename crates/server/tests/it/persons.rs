@@ -275,3 +275,13 @@ async fn participants_are_a_table_with_all_that_is_known_and_allowed() {
     assert!(file.bytes.starts_with(b"PK"));
     assert_eq!(client.get(&format!("{VERSION}/participants.csv")).await.status, StatusCode::UNAUTHORIZED);
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn many_starts_at_one_address_are_noticed_and_refused_to_nobody() {
+    let client = Client::ready().await;
+    for i in 0..32 {
+        assert_eq!(begin(&client, &format!("p{i}")).await.status, StatusCode::CREATED);
+    }
+    let flagged = &results(&client, "").await["standing"]["flagged"];
+    assert_eq!((&flagged[0]["flag"], &flagged[0]["sessions"]), (&json!("many_starts"), &json!(2)));
+}

@@ -1,5 +1,6 @@
 use crate::client::{Client, body_of};
-use axum::http::StatusCode;
+use axum::body::Body;
+use axum::http::{Request, StatusCode};
 use kelir_server::Server;
 use kelir_study::trials::Role;
 use serde_json::{Value, json};
@@ -315,4 +316,33 @@ async fn a_stimulus_that_is_missing_is_an_error_and_never_an_empty_hash() {
     assert!(error.contains("has no stimulus of condition"), "{error}");
     assert_eq!(made.sha256.len(), 64);
     assert_eq!(client.choose(&path, &token, 0, "left").await.status, StatusCode::OK);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_lost_reply_is_asked_for_again_and_begins_nothing_twice() {
+    let client = Client::ready().await;
+    let ask = async |key: &str| {
+        let request = Request::post("/api/v1/studies/shadow-puppets/sessions")
+            .header("idempotency-key", key)
+            .header("content-type", "application/json");
+        client.send(request.body(Body::from("{}")).unwrap()).await
+    };
+    let (first, again) = (ask("k1").await, ask("k1").await);
+    assert_eq!((first.status, again.status), (StatusCode::CREATED, StatusCode::CREATED), "{}", again.text());
+    let (first, again) = (first.json(), again.json());
+    assert_eq!(first["session_id"], again["session_id"]);
+    let path = format!("/api/v1/sessions/{}", first["session_id"].as_str().unwrap());
+    let old = client.call("GET", &path, first["token"].as_str().unwrap(), &Value::Null).await;
+    assert_eq!(old.status, StatusCode::UNAUTHORIZED, "the old token is void");
+    let token = again["token"].as_str().unwrap();
+    let consent = client.call("POST", &format!("{path}/consent"), token, &Value::Null).await;
+    assert_eq!(consent.status, StatusCode::OK);
+    let late = ask("k1").await;
+    assert_eq!((late.status, late.json()["code"].clone()), (StatusCode::CONFLICT, json!("already_begun")));
+    assert_ne!(ask("k2").await.json()["session_id"], first["session_id"]);
+    for wrong in ["", "a b", &"k".repeat(256)] {
+        let refused = ask(wrong).await;
+        assert_eq!(refused.json()["code"], "invalid_parameter", "{wrong}: {}", refused.text());
+    }
+    assert_eq!(ask(&"k".repeat(255)).await.status, StatusCode::CREATED);
 }

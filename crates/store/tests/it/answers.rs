@@ -1,7 +1,7 @@
 //! Answers: the first one stands, whoever races whom.
 
 use crate::setting::{IDLE, answer, append, begin, open, stranger};
-use kelir_store::{Appended, Completed, Store, StoredAnswers};
+use kelir_store::{Appended, Completed, Store, StoreError, StoredAnswers};
 use kelir_study::trials::Role;
 use serde_json::json;
 
@@ -92,8 +92,10 @@ async fn racing_writers_leave_one_row_a_trial_and_an_unbroken_chain() {
 async fn what_is_stored_survives_closing_and_opening() {
     let (folder, store, served) = open().await;
     let session = begin(&store, &served, IDLE).await;
-    store.consent(&session.session_id, "hash of the text").await.unwrap();
-    store.consent(&session.session_id, "hash of another").await.unwrap();
+    for text in ["hash of the text", "hash of another"] {
+        let moved = |_| -> Result<_, StoreError> { panic!("nobody else has its slot") };
+        store.consent(&session, text, IDLE, moved).await.unwrap();
+    }
     append(&store, &session, answer(0, true, 100.0)).await;
     let trials = store.trials(&session.session_id).await.unwrap();
     store.close().await;

@@ -3,13 +3,16 @@
 
 mod answers;
 mod chain;
+mod failing;
 mod first_layout;
 mod growing;
 mod importing;
 mod killed;
+mod private;
 mod properties;
 mod refusing;
 mod sessions;
 mod setting;
+mod slots;
 mod upgrading;
 mod versions;

@@ -145,9 +145,9 @@ async fn a_row_says_where_it_stands_and_contents_are_whole_or_blank() {
     }
     for sql in [
         "INSERT INTO sessions SELECT 'new', study_id, file_hash, subject_id, token_hash, 9, plan_seed, params, display, created_at,
-         last_seen_at, NULL, NULL, NULL, version || 'x', 0, NULL FROM sessions LIMIT 1",
+         last_seen_at, NULL, NULL, NULL, version || 'x', 0, NULL, NULL, kind, flags, NULL FROM sessions LIMIT 1",
         "INSERT INTO sessions SELECT 'new', study_id, file_hash, subject_id, token_hash, 9, plan_seed, params, display, created_at,
-         last_seen_at, NULL, NULL, NULL, NULL, 0, NULL FROM sessions LIMIT 1",
+         last_seen_at, NULL, NULL, NULL, NULL, 0, NULL, NULL, kind, flags, NULL FROM sessions LIMIT 1",
     ] {
         let error = sqlx::query(sql).execute(&mut stranger).await.expect_err(sql).to_string();
         assert!(error.contains("a session belongs to a version"), "{sql}: {error}");
@@ -159,7 +159,7 @@ async fn a_row_says_where_it_stands_and_contents_are_whole_or_blank() {
         "UPDATE answer_contents SET answer = NULL, nonce = NULL, payload = NULL",
         "UPDATE response_payloads SET payload = NULL WHERE response_id = 1",
         "INSERT INTO sessions SELECT 'new', study_id, file_hash, subject_id, token_hash, 9, plan_seed, params, display, created_at,
-         last_seen_at, NULL, NULL, NULL, version, 0, NULL FROM sessions LIMIT 1",
+         last_seen_at, NULL, NULL, NULL, version, 0, NULL, NULL, kind, flags, NULL FROM sessions LIMIT 1",
     ] {
         assert_eq!(sqlx::query(sql).execute(&mut stranger).await.unwrap().rows_affected(), 1, "{sql}");
     }

@@ -92,13 +92,3 @@ async fn every_connection_has_the_pragmas_that_durability_rests_on() {
     let (full, keys) = store.pragmas().await.unwrap();
     assert_eq!((full, keys), (2, 1), "synchronous = FULL, foreign_keys = on");
 }
-
-#[tokio::test(flavor = "multi_thread")]
-async fn sessions_are_counted_from_an_index_alone() {
-    let (folder, _store, _) = open().await;
-    let query = "EXPLAIN QUERY PLAN SELECT slot FROM sessions WHERE study_id = '' AND version = ''
-                 AND (completed_at IS NOT NULL OR last_seen_at > '')";
-    let plan: Vec<(i64, i64, i64, String)> =
-        sqlx::query_as(query).fetch_all(&mut stranger(folder.path()).await).await.unwrap();
-    assert!(plan[0].3.contains("COVERING INDEX"), "{plan:?}");
-}

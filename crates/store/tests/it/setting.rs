@@ -148,7 +148,14 @@ impl Served {
 
 /// Begins a session; sessions not seen for `idle` give up their slots.
 pub async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
-    let new = NewSession {
+    let (new, served) = (newcomer(served, idle), served.clone());
+    let plan = move |slot| Ok::<_, StoreError>(served.plan(slot));
+    store.create_session(new, plan).await.unwrap().session().unwrap()
+}
+
+/// Somebody who begins.
+pub fn newcomer(served: &Served, idle: Duration) -> NewSession {
+    NewSession {
         study_id: served.study.id.clone(),
         version: served.version.clone(),
         file_hash: served.study.file_hash(),
@@ -162,10 +169,7 @@ pub async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
         params: json!({}),
         display: json!({}),
         idle,
-    };
-    let served = served.clone();
-    let begun = store.create_session(new, move |slot| Ok::<_, StoreError>(served.plan(slot))).await;
-    begun.unwrap().session().unwrap()
+    }
 }
 
 /// An answer as a page sends it to a kind of trial.

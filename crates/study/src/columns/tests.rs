@@ -85,7 +85,7 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
             payload["hidden_ms"] = json!(0);
             payload["onset"] = json!(-1);
             let checked = rules.check(&payload).map_or_else(|_| String::new(), |checked| checked.answer);
-            let broken = if trial.trial.name() == "two-interval" { "requested_ms onset" } else { "onset" };
+            let broken = if trial.trial.name() == "two-interval" { "onset requested_ms" } else { "onset" };
             let answer = if trial.trial.name() == "two-interval" {
                 json!({ "choice": roles[usize::from(!chose_first)].as_str(), "rt_ms": 812.5 }).to_string()
             } else {

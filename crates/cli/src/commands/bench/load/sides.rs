@@ -1,0 +1,124 @@
+//! Both sides of the comparison, each a process of its own on a folder of its own.
+
+use std::io::{BufRead, BufReader};
+use std::net::SocketAddr;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+use anyhow::{Context, Result, ensure};
+use tempfile::TempDir;
+
+/// Items of the study, and so answers of a session.
+pub const ITEMS: usize = 5;
+
+const STUDY: &str = r#"
+title = "Load"
+question = "Which?"
+seed = 3
+size = [16, 9]
+estimated_minutes = 1
+texts = { welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }
+conditions = { pa = { technique = "pa" }, mc = { technique = "mc" } }
+[[blocks]]
+id = "stills"
+title = "Stills"
+kind = "still"
+conditions = ["pa", "mc"]
+target = "pa"
+"#;
+
+const SCENE: &str = r#"
+[screen]
+width_m = 1.6
+height_m = 0.9
+albedo = 0.8
+[lamp]
+position_m = [0.0, 0.0, -1.5]
+[[lamp.emitters]]
+name = "bulb"
+shape = "rectangle"
+size_m = [0.1, 0.1]
+radiance = 40.0
+[ambient]
+model = "none"
+[[puppets]]
+image = "../puppets/square.svg"
+height_m = 0.4
+position_m = [0.0, 0.0, -0.2]
+texels = 64
+[exposure]
+white = "auto"
+"#;
+
+const SQUARE: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"><rect x="2" y="2" width="4" height="4"/></svg>"#;
+const RIVAL: &str = include_str!("../../../../../../tests/rivals/express/server.mjs");
+const RIVAL_PACKAGE: &str = include_str!("../../../../../../tests/rivals/express/package.json");
+
+/// A server that runs until this is dropped.
+pub struct Side {
+    pub name: &'static str,
+    pub address: SocketAddr,
+    process: Child,
+    _folder: TempDir,
+}
+
+impl Drop for Side {
+    fn drop(&mut self) {
+        // What has ended already needs no killing.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
+    Ok(std::fs::write(path, text)?)
+}
+
+/// kelir itself, with a small study in place of the built-in one.
+pub fn kelir() -> Result<Side> {
+    let folder = tempfile::tempdir()?;
+    let item = |i| format!("[[blocks.items]]\nid = \"still-{i}\"\nscene = \"../scenes/load.toml\"\n");
+    let study: String = (0..ITEMS).map(item).collect();
+    write(folder.path(), "studies/shadow-puppets.toml", &format!("{STUDY}{study}"))?;
+    write(folder.path(), "scenes/load.toml", SCENE)?;
+    write(folder.path(), "puppets/square.svg", SQUARE)?;
+    let mut command = Command::new(std::env::current_exe()?);
+    command.arg("serve").arg("--data").arg(folder.path()).args(["--listen", "127.0.0.1:0"]);
+    start("kelir", command, folder, "The stimuli are ready.")
+}
+
+/// Express and better-sqlite3, installed into a temporary folder.
+pub fn express() -> Result<Side> {
+    let folder = tempfile::tempdir()?;
+    write(folder.path(), "server.mjs", RIVAL)?;
+    write(folder.path(), "package.json", RIVAL_PACKAGE)?;
+    let mut npm = Command::new("npm");
+    npm.args(["install", "--silent", "--no-audit", "--no-fund"])
+        .current_dir(folder.path())
+        .stdout(Stdio::null());
+    ensure!(npm.status().context("npm cannot be run")?.success(), "npm install failed");
+    let mut command = Command::new("node");
+    command.arg(folder.path().join("server.mjs")).arg(folder.path().join("rival.sqlite"));
+    command.env("NODE_ENV", "production");
+    start("Express + better-sqlite3", command, folder, "http://")
+}
+
+/// Starts a server and waits for the line that says it is ready; the first address that it prints is its own.
+fn start(name: &'static str, mut command: Command, folder: TempDir, ready: &str) -> Result<Side> {
+    let mut process = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn()?;
+    let lines = BufReader::new(process.stdout.take().context("no output")?).lines();
+    let mut address = None;
+    for line in lines.map_while(Result::ok) {
+        let found = line.split_once("http://").and_then(|(_, rest)| rest.split('/').next()?.parse().ok());
+        address = address.or(found);
+        if line.contains(ready) {
+            let address = address.context("it printed no address")?;
+            return Ok(Side { name, address, process, _folder: folder });
+        }
+    }
+    // Waited for, so that nothing is left of it.
+    process.wait()?;
+    anyhow::bail!("{name} did not start")
+}

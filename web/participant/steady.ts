@@ -1,0 +1,24 @@
+/**
+ * Makes `performance.now()` what the standard says it is: a clock that never goes back, and the one by which frames are timed. Where it is
+ * not (after sleep, or where something blurs it), an answer would seem to come before its picture, and would not count until the clock has
+ * caught up.
+ */
+export function steady(clock: () => number): { now(): number; atLeast(time: number): void } {
+  let last = Number.NEGATIVE_INFINITY;
+  let shift = 0;
+  const atLeast = (time: number) => {
+    const now = clock() + shift;
+    if (now < time) shift += time - now;
+  };
+  const now = () => {
+    atLeast(last);
+    return (last = clock() + shift);
+  };
+  return { now, atLeast };
+}
+
+if (typeof window !== "undefined") {
+  const { now, atLeast } = steady(performance.now.bind(performance));
+  performance.now = now;
+  requestAnimationFrame(atLeast);
+}
