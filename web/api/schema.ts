@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 99647e9698138510de30362cb858c7136ee1c42caa2e4e6b25ac88f79a14c0a8 9bd5b5cf8e19dc052b62c906ff9666e7d86403bdc4c862a983d2a4ddcc0f30a2
+// Generated from openapi.json by `npm run types`; do not edit. 4ab910a9e1c2d575490b75480f11fdfcee54650be6df8fffebd57b5cda947773 baba193a580ba84ac8c76b49785ac5bcc441309d5c63a8a6764c4708146d5eae
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -409,6 +409,40 @@ export interface paths {
          * @description An animation is JSON (`application/vnd.kelir.animation+json`) that names its frames by hash.
          */
         get: operations["get_stimulus"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/events.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** One row */
+        get: operations["get_events_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/events-codebook.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What each */
+        get: operations["get_events_codebook_csv"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1135,6 +1169,13 @@ export interface components {
              * @description Frames passed over without being drawn.
              */
             skipped?: number | null;
+            /**
+             * Format: double
+             * @description Frames never
+             */
+            missed_frames?: number | null;
+            /** @description What was shown when */
+            draws?: number[][] | null;
         };
         /** @description Does the curve hold the data? */
         Goodness: {
@@ -2292,17 +2333,7 @@ export interface components {
             t?: number | null;
         };
         /** @description What every page says of how a trial was taken. A stimulus pixel is one of the picture, a device pixel one of the display, a CSS pixel one of the page. */
-        Taken: {
-            /**
-             * Format: double
-             * @description Width at which each stimulus stood, pinch zoom included: its width in pixels × scale / device_pixel_ratio.
-             */
-            css_width_px?: number | null;
-            /**
-             * Format: double
-             * @description Device pixels per CSS pixel.
-             */
-            device_pixel_ratio?: number | null;
+        Taken: components["schemas"]["Geometry"] & {
             /** @description Of animations: how each was played, by role. */
             frames?: {
                 [key: string]: components["schemas"]["FrameLog"];
@@ -2342,11 +2373,6 @@ export interface components {
             rt: number;
             /**
              * Format: double
-             * @description Device pixels per stimulus pixel, pinch zoom included; 1 is native. Shown on device_pixel_ratio × css_width_px device pixels.
-             */
-            scale?: number | null;
-            /**
-             * Format: double
              * @description From the start of the page's session to the answer.
              */
             time_elapsed?: number | null;
@@ -2354,8 +2380,24 @@ export interface components {
             timestamp?: string | null;
             /** @description Plugin that showed the trial. */
             trial_type?: string | null;
-            /** @description Width and height of the window's inside, CSS px. */
-            viewport?: components["schemas"]["Length"][] | null;
+            at_onset?: components["schemas"]["Geometry"] | null;
+            /**
+             * Format: int32
+             * @description 1 where they stood otherwise at onset, else 0; the changes are events.
+             */
+            geometry_changed?: number | null;
+            /** @description What happened to the page from the last answer to this one; the table of events has a row each. */
+            events?: components["schemas"]["TrialEvent"][] | null;
+            /**
+             * Format: int32
+             * @description How many events there were beyond those that are listed.
+             */
+            events_dropped?: number | null;
+            /**
+             * Format: int32
+             * @description Of animations: how many
+             */
+            missed_frames?: number | null;
         };
         /** @description What participants read; each text is a list of plain paragraphs. */
         Texts: {
@@ -2502,7 +2544,6 @@ export interface components {
         TrialSettings: components["schemas"]["Intervals"];
         /** @description What a page sends for a two-alternative trial. */
         TwoAlternativeAnswer: components["schemas"]["Taken"] & {
-            arrangement?: components["schemas"]["Arrangement"] | null;
             /** @description The picture chosen. */
             choice: components["schemas"]["Side"];
         };
@@ -2528,6 +2569,72 @@ export interface components {
         };
         /** @description One of the two intervals. */
         Which: "first" | "second";
+        /** @description How stimuli stand on the page. */
+        Geometry: {
+            arrangement?: components["schemas"]["Arrangement"] | null;
+            /**
+             * Format: double
+             * @description Width at which each stimulus stood, pinch zoom included: its width in pixels × scale / device_pixel_ratio.
+             */
+            css_width_px?: number | null;
+            /**
+             * Format: double
+             * @description Device pixels per CSS pixel.
+             */
+            device_pixel_ratio?: number | null;
+            /**
+             * Format: double
+             * @description Device pixels per stimulus pixel, pinch zoom included; 1 is native. Shown on device_pixel_ratio × css_width_px device pixels.
+             */
+            scale?: number | null;
+            /** @description Width and height of the window's inside, CSS px. */
+            viewport?: components["schemas"]["Length"][] | null;
+        };
+        /** @description What happened. */
+        EventKind: "blur" | "focus" | "hidden" | "visible" | "resize" | "orientation" | "fullscreen_enter" | "fullscreen_exit" | "ignored";
+        /**
+         * @description What happened.
+         *         pub enum EventKind {
+         *             /// the page lost the focus, though it may still have been in view
+         *             Blur = "blur",
+         *             /// the page got the focus back
+         *             Focus = "focus",
+         *             /// the page went out of view
+         *             Hidden = "hidden",
+         *             /// the page came back into view
+         *             Visible = "visible",
+         *             /// window, zoom or display changed, and with it how the stimuli stand
+         *             Resize = "resize",
+         *             /// the display was turned
+         *             Orientation = "orientation",
+         *             /// full screen began
+         *             FullscreenEnter = "fullscreen_enter",
+         *             /// full screen ended
+         *             FullscreenExit = "fullscreen_exit",
+         *             /// an input came that does not count as the answer
+         *             Ignored = "ignored",
+         *         }
+         *     }
+         *
+         *     worded! {
+         *         /// Why an input does not count.
+         */
+        Ignored: "untrusted" | "double" | "repeat" | "held" | "early" | "gap" | "answered";
+        /** @description One thing that happened to the page. */
+        TrialEvent: components["schemas"]["Geometry"] & {
+            choice?: components["schemas"]["Role"] | null;
+            /** @description What happened. */
+            event: components["schemas"]["EventKind"];
+            input?: components["schemas"]["Input"] | null;
+            /** @description Of a turned display: how it is held now, in the browser's words, such as landscape-primary. */
+            orientation?: string | null;
+            reason?: components["schemas"]["Ignored"] | null;
+            /**
+             * Format: double
+             * @description When, from the trial's onset; below 0 it was before that and after the last answer.
+             */
+            time_ms: number;
+        };
     };
     responses: never;
     parameters: never;
@@ -4188,6 +4295,158 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_events_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+        };
+    };
+    get_events_codebook_csv: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A file to keep. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
             };
             /** @description `not_found`: There is nothing of this name. */
             404: {
