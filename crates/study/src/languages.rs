@@ -39,11 +39,9 @@ impl StudyDefinition {
 
 /// The study's own language.
 pub(crate) fn read_language(fields: &mut Fields<'_>) -> Option<String> {
-    if !fields.has("language") {
-        fields.raw("language");
-        return Some(unnamed());
-    }
-    fields.get("language", LANGUAGE, |v| v.as_str().filter(|tag| language(tag)).map(str::to_owned))
+    let read =
+        fields.get("language", LANGUAGE, |v| v.as_str().filter(|tag| language(tag)).map(str::to_owned));
+    if fields.has("language") { read } else { Some(unnamed()) }
 }
 
 /// The translations by language; each is whole.

@@ -42,6 +42,8 @@ const SAMPLE: &str = r#"
 [completion]
 [screening]
 [texts]
+[translations.TAG]
+texts = {}
 [conditions.NAME]
 technique = "pa"
 camera = {}
