@@ -207,11 +207,11 @@ fn what_ships_is_known_by_name_anywhere() {
     good(&[&["render", file.to_str().unwrap(), "-o", "file.png"][..], &small].concat());
     let read = |name: &str| std::fs::read(empty.path().join(name)).unwrap();
     assert_eq!(read("named.png"), read("file.png"), "a name and its file are one scene");
-    let told = good(&[&["animate", "hutan", "--json", "-o", "film.apng"][..], &small].concat());
+    let told = good(&[&["animate", "arjuna-dance", "--json", "-o", "film.apng"][..], &small].concat());
     assert!(serde_json::from_str::<Value>(&told).unwrap()["frames"].is_array());
     good(&["scene", "check", "putri-near", "benchmark"]);
 
-    let (code, _, said) = run(&["render", "arjuna-naer", "-o", "x.png", "--technique", "pa"]);
+    let (code, _, said) = run(&["render", "arjuna-neer", "-o", "x.png", "--technique", "pa"]);
     assert_eq!(code, Some(2));
     assert!(said.contains("did you mean arjuna-near") && said.contains(".toml"), "{said}");
     assert!(!empty.path().join("x.png").exists());
