@@ -52,8 +52,11 @@ async function take({ name, study, viewport, dpr = 1, input, choices, targets, r
       return { name, code, trials, log, early, said, complaints };
     }
     if (!id.startsWith("choice-")) {
-      await press(page, input, hook);
-      await page.getByTestId(id).waitFor({ state: "detached" });
+      // A second click of a double one is none: it is pressed until the page goes on.
+      for (let gone = false; !gone; ) {
+        await press(page, input, hook);
+        gone = await page.getByTestId(id).waitFor({ state: "detached", timeout: 1000 }).then(() => true, () => false);
+      }
       continue;
     }
     const index = trials.length;

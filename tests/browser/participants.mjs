@@ -68,14 +68,17 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
 }
 
 /** The hash of the pixels of the picture on a button: of a still, or of whichever frame is shown. */
-const shown = (page, id) =>
-  page.getByTestId(id).evaluate((button) => {
+function shown(page, id) {
+  return page.getByTestId(id).evaluate((button) => {
     const picture = button.firstElementChild;
     return globalThis.pixelsHash(picture, picture.naturalWidth ?? picture.width, picture.naturalHeight ?? picture.height);
   });
+}
 
 /** What the page was told of the two: the hashes of the bytes that it got. */
-const sides = (page) => Promise.all(["choice-left", "choice-right"].map((id) => page.getByTestId(id).getAttribute("data-sha256")));
+function sides(page) {
+  return Promise.all(["choice-left", "choice-right"].map((id) => page.getByTestId(id).getAttribute("data-sha256")));
+}
 
 /** The test hook of the screen that is shown now. */
 async function current(page) {

@@ -43,7 +43,8 @@ fn answer(server: &Server) {
                     "trial_type": "two-alternative", "plugin_version": "0.1.0", "input": "keyboard", "scale": 1.0, "device_pixel_ratio": 1.0,
                     "viewport": [1280, 800], "refresh_hz": 60.0, "reload_count": 0, "timestamp": "2026-11-22T10:30:00.000Z"});
                 let path = format!("{path}/trials/{}", trial["trial_index"]);
-                assert_eq!(server.call("PUT", &path, token, &body).0, 200);
+                let (status, told) = server.call("PUT", &path, token, &body);
+                assert_eq!(status, 200, "{told}");
             }
         }
         if person < 32 {

@@ -33,7 +33,7 @@ fn stored(data: &Path) -> Vec<Value> {
 fn a_preview_goes_to_its_end_and_stores_nothing() {
     let data = small_data();
     let server = Server::start_small(data.path());
-    let before = stored(data.path());
+    let before = stored(&server.data);
     let url = link(data.path(), "preview");
     let (_, query) = url.split_once('?').unwrap();
     let (status, visit) =
@@ -61,10 +61,10 @@ fn a_preview_goes_to_its_end_and_stores_nothing() {
     let (status, end) = server.call("POST", &at("/completion"), token, &Value::Null);
     assert_eq!((status, &end["redirect"]), (200, &Value::Null), "no panel is told: {end}");
     assert_eq!(server.call("GET", &at(""), Some("other"), &Value::Null).0, 401);
-    assert_eq!(stored(data.path()), before);
+    assert_eq!(stored(&server.data), before);
     // Negative control: a participant leaves rows.
     assert_eq!(begin(&server, &json!({})).0, 201);
-    assert_ne!(stored(data.path()), before);
+    assert_ne!(stored(&server.data), before);
 }
 
 #[test]
@@ -79,10 +79,10 @@ fn a_plain_preview_is_a_participants_visit_and_a_changed_link_none_at_all() {
     );
     let mut changed = params(&link(data.path(), "pilot"));
     changed["exp"] = json!("9999999999");
-    let before = stored(data.path());
+    let before = stored(&server.data);
     let (status, refused) = begin(&server, &changed);
     assert_eq!((status, &refused["code"]), (403, &json!("link_refused")));
-    assert_eq!(stored(data.path()), before);
+    assert_eq!(stored(&server.data), before);
     // Whoever is signed in needs no signature.
     let cookie = server.sign_in();
     let visit = server.research(&cookie, "/api/v1/studies/small/visit?preview");
@@ -105,7 +105,7 @@ fn a_pilot_is_stored_as_one_and_its_link_is_not_kept() {
 fn a_preview_in_a_browser_says_that_it_is_one_and_leaves_nothing_behind() {
     let data = small_data();
     let server = Server::start_small(data.path());
-    let before = stored(data.path());
+    let before = stored(&server.data);
     let path =
         link(data.path(), "preview").split_once("/study/").map(|(_, rest)| format!("/study/{rest}")).unwrap();
     let seen = kelir_tests::browser("preview.mjs", &json!({ "url": format!("{}{path}", server.base) }));
@@ -115,5 +115,5 @@ fn a_preview_in_a_browser_says_that_it_is_one_and_leaves_nothing_behind() {
         (&json!("PREVIEW"), &json!([]), &json!([])),
         "{seen}"
     );
-    assert_eq!(stored(data.path()), before);
+    assert_eq!(stored(&server.data), before);
 }

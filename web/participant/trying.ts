@@ -16,5 +16,6 @@ export async function visitOf(study: string): Promise<VisitKind> {
 export function showRibbon(visit: VisitKind): void {
   if (visit === "participant") return;
   const restart = visit === "preview" ? [action(words("trying-restart"), () => location.reload())] : [];
+  document.documentElement.dataset.trying = visit;
   document.body.append(h("aside", { id: "ribbon", "data-testid": "ribbon" }, h("span", {}, words(visit === "preview" ? "trying-preview" : "trying-pilot")), ...restart));
 }

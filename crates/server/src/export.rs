@@ -91,9 +91,9 @@ pub async fn spreadsheet(store: &Store, selection: &Selection) -> Result<Vec<u8>
         events_table(store, selection).await?,
     ];
     let written = tokio::task::spawn_blocking(move || workbook(&tables)).await;
-    Ok(written
+    written
         .map_err(|e| ExportError::Workbook(e.to_string()))?
-        .map_err(|e| ExportError::Workbook(e.to_string()))?)
+        .map_err(|e| ExportError::Workbook(e.to_string()))
 }
 
 /// Why there is no spreadsheet.

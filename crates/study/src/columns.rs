@@ -26,6 +26,7 @@ worded! {
     }
 }
 
+#[expect(clippy::derivable_impls, reason = "`worded!` writes the enum")]
 impl Default for SessionStatus {
     fn default() -> SessionStatus {
         SessionStatus::InProgress

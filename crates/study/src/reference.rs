@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::StudyDefinition;
+use crate::trials::TrialKind;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -56,7 +57,7 @@ kind = "still"
 conditions = ["NAME", "files"]
 target = "NAME"
 items = [{ id = "a" }, { id = "b" }]
-trial = "two-interval"
+trial = "KIND"
 trial_settings = {}
 adaptive = { procedure = "staircase" }
 psychometric = {}
@@ -67,7 +68,9 @@ adaptive = { procedure = "quest-plus" }
 
 fn keys() -> BTreeMap<String, Key> {
     ASKED.with_borrow_mut(BTreeMap::clear);
-    StudyDefinition::parse("sample.toml", SAMPLE).unwrap_err();
+    for kind in TrialKind::all() {
+        StudyDefinition::parse("sample.toml", &SAMPLE.replace("KIND", kind.name())).unwrap_err();
+    }
     // `pairs` is what `items` used to be called, and `[conditions]` holds names.
     ASKED.with_borrow(|asked| {
         asked

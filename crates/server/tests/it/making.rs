@@ -112,7 +112,7 @@ async fn pictures_of_ones_own_take_the_place_of_drawn_ones() {
     let whole = photo(64);
     std::fs::write(folder.join("d.png"), &whole[..whole.len() / 2]).unwrap();
     let cut = try_with("a.png", "d.png").await.unwrap_err();
-    assert!(cut.contains("b (mc)") && cut.contains("no PNG or JPEG"), "{cut}");
+    assert!(cut.contains("conditions.mc.files.b") && cut.contains("no PNG or JPEG"), "{cut}");
     let missing = try_with("a.png", "none.png").await.unwrap_err();
     assert!(missing.contains("conditions.mc.files.b"), "{missing}");
 }

@@ -139,6 +139,24 @@ fn bodies(of: &Operation) -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
+/// A preview that a researcher begins: its id and its token.
+async fn preview(router: axum::Router, cookie: &str, consented: bool) -> (String, String) {
+    let body = json!({ "params": { "preview": "" } }).to_string();
+    let request = Request::post("/api/v1/studies/shadow-puppets/sessions")
+        .header(header::COOKIE, cookie)
+        .header(header::CONTENT_TYPE, "application/json");
+    let begun = send(router.clone(), request.body(Body::from(body)).unwrap()).await.json();
+    let text = |key: &str| begun[key].as_str().unwrap().to_owned();
+    let (id, token) = (text("session_id"), text("token"));
+    if consented {
+        let request = Request::post(format!("/api/v1/previews/{id}/consent"))
+            .header(header::AUTHORIZATION, format!("Bearer {token}"));
+        let answer = send(router, request.body(Body::empty()).unwrap()).await;
+        assert_eq!(answer.status.as_u16(), 200, "{}", answer.text());
+    }
+    (id, token)
+}
+
 /// Sends every mixture of right and wrong addresses, parameters, credentials and bodies; answers what came back.
 async fn garbage(client: &Client, operation: &Operation) -> Vec<Answer> {
     let (path, token, _) = client.join(json!({})).await;
@@ -152,6 +170,11 @@ async fn garbage(client: &Client, operation: &Operation) -> Vec<Answer> {
     client.server.store().sign_in("researcher", &signed_in, minute).await.unwrap();
     let researcher = format!("kelir_session={researcher}");
     let router = client.server.router();
+    let sessions = if operation.path.contains("/previews/") {
+        [preview(router.clone(), &researcher, true).await, preview(router.clone(), &researcher, false).await]
+    } else {
+        sessions
+    };
     let mut answers = Vec::new();
     for (session, token) in &sessions {
         for address in addresses(&operation.path, session) {

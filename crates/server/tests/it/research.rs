@@ -175,7 +175,7 @@ async fn the_table_of_events_has_one_row_an_event_and_a_codebook_for_every_colum
     assert_eq!(answer.header("content-type"), "text/csv; charset=utf-8");
     let text = answer.text();
     let lines: Vec<Vec<&str>> = text.trim_end().split("\r\n").map(|line| line.split(',').collect()).collect();
-    let codebook = client.research(&cookie, &table("events-codebook.csv")).await.text();
+    let codebook = client.research(&cookie, &table("events_codebook.csv")).await.text();
     let described: Vec<&str> =
         codebook.trim_end().split("\r\n").skip(1).map(|l| l.split(',').next().unwrap()).collect();
     assert_eq!(lines[0], described);

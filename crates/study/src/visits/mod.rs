@@ -22,6 +22,7 @@ worded! {
     }
 }
 
+#[expect(clippy::derivable_impls, reason = "`worded!` writes the enum")]
 impl Default for SessionKind {
     fn default() -> SessionKind {
         SessionKind::Participant
