@@ -24,7 +24,8 @@ try {
   const code = (await page.getByTestId("completion-code").textContent()).trim();
   await page.getByTestId("ribbon").getByRole("button").click();
   await page.getByTestId("consent-agree").waitFor();
-  const kept = await page.evaluate(() => [...Object.keys(localStorage), ...Object.keys(sessionStorage)].filter((key) => key.startsWith("kelir:")));
+  // When the last input counted is no answer.
+  const kept = await page.evaluate(() => [...Object.keys(localStorage), ...Object.keys(sessionStorage)].filter((key) => key.startsWith("kelir:") && key !== "kelir:counted"));
   console.log(JSON.stringify({ ribbon, code, kept, complaints }));
 } finally {
   await browser.close();

@@ -5,7 +5,7 @@ use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use kelir_tests::{Server, Taking, binary, small_data};
+use kelir_tests::{Server, Taking, binary, small_data, sql};
 use serde_json::{Value, json};
 
 /// Connections that say nothing, or not enough.
@@ -183,4 +183,19 @@ fn the_greeting_says_whose_password_is_in_force_and_links_can_be_opened() {
     let given = greeting(Some("wayang kulit"), "0.0.0.0:0");
     assert!(given.contains("KELIR_RESEARCHER_PASSWORD") && !given.contains(&file), "{given}");
     assert!(given.contains("http://127.0.0.1:") && !given.contains("0.0.0.0"), "{given}");
+}
+
+#[test]
+fn a_program_that_reads_the_database_beside_the_server_takes_nothing_away() {
+    let data = small_data();
+    let server = Server::start_small(data.path());
+    let database = server.data.join("kelir.sqlite");
+    for begun in 1..=3 {
+        let body = json!({ "params": {}, "display": {} });
+        assert_eq!(server.call("POST", "/api/v1/studies/small/sessions", None, &body).0, 201);
+        // Each look is a process of its own: when it goes, it must know that it is not the last.
+        assert_eq!(sql(&database, "SELECT count(*) AS n FROM sessions")[0]["n"], begun);
+    }
+    drop(server);
+    assert_eq!(sql(&database, "SELECT count(*) AS n FROM sessions")[0]["n"], 3);
 }
