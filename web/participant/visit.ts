@@ -33,7 +33,7 @@ export class Visit {
     (progress) => this.#tell({ progress }),
   );
   /** What is known of the pictures on their way. */
-  #coming: Coming = { slow: false, awaited: false, progress: { here: 0, of: 0, bytes: 0 } };
+  #coming: Coming = { slow: false, sentence: null, progress: { here: 0, of: 0, bytes: 0 } };
   #refresh: Promise<number | null> | null = null;
   #instructed = false;
 
@@ -182,23 +182,28 @@ export class Visit {
     if (this.#session.gone) throw new Ended(words("gone-title"), [words("gone")]);
   }
 
-  /** A trial's pictures; says how far they are when they are long in coming, for the screen is empty until then. */
+  /** A trial's pictures; a page says how far they are when they are long in coming, for the screen is empty until then. */
   async #load(trial: Trial): Promise<Pictures> {
-    const slow = setTimeout(() => this.#tell({ awaited: true }), PATIENCE_MS);
+    const sentence = h("p", { role: "status" });
+    const slow = setTimeout(() => {
+      showPage(this.#jsPsych.getDisplayElement() ?? cleared(), words("deciding-title"), [sentence]);
+      this.#tell({ sentence });
+    }, PATIENCE_MS);
     try {
       return await this.#loader.load(trial);
     } finally {
       clearTimeout(slow);
-      this.#tell({ awaited: false });
+      this.#tell({ sentence: null });
     }
   }
 
   /** Says what there is to say of the pictures on their way: how far they are to who waits for them. */
   #tell(news: Partial<Coming>): void {
     Object.assign(this.#coming, news);
-    const { slow, awaited, progress } = this.#coming;
+    const { slow, sentence, progress } = this.#coming;
     const { here, of, bytes } = progress;
-    say("pictures", slow ? words("pictures-slow") : awaited ? words("pictures-coming", { here, of, mb: bytes / 1e6 }) : null);
+    say("pictures", slow ? words("pictures-slow") : null);
+    if (sentence !== null) sentence.textContent = words("pictures-coming", { here, of, mb: bytes / 1e6 });
   }
 
   #measure(): Promise<number | null> {
@@ -223,10 +228,10 @@ export class Visit {
   }
 }
 
-/** Whether the line is slow and whether the pictures are waited for, and how far they are. */
+/** Whether the line is slow, where it is said to who waits how far the pictures are, and how far they are. */
 interface Coming {
   slow: boolean;
-  awaited: boolean;
+  sentence: HTMLElement | null;
   progress: Progress;
 }
 
