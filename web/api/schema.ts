@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. a0127e015dab857428334b410681d12743474cb1c80e2c1fa030743a588121aa 261eabbe9632133a5d1c76b0389935bac9380b79e5bc292d11a8aae108ec3a3a
+// Generated from openapi.json by `npm run types`; do not edit. 3fed1cda9b7a5211735503d6740662ac02160b0943f2aeee6491694b3163ed25 cc37bdca1c6db0d157b23e62914f60aa436da27750721df22ec49b7fb9664cc2
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -2580,6 +2580,8 @@ export interface components {
             title: string;
             /** @description The version that is served; null while its stimuli are not all made. */
             version: string | null;
+            /** @description What may be a mistake in its file, and is served all the same. */
+            warnings: string[];
         };
         /** @description A version of a study: what was asked and what was shown. */
         StudyVersion: {
