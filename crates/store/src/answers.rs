@@ -8,7 +8,7 @@ use crate::plans::{PlannedTrial, decided, insert_trials, next_trial, trial};
 use crate::sessions::Session;
 use crate::sqlite::Store;
 use crate::writer::Refused;
-use kelir_study::trials::Role;
+use kelir_study::trials::{Checked, Role};
 use rusqlite::{Connection, OptionalExtension, params};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -26,6 +26,8 @@ pub struct NewAnswer {
     pub answer: String,
     /// Everything that the page sent, to the byte.
     pub payload: String,
+    /// The size at which the page says that it showed the stimuli.
+    pub stimulus_size: Option<[u32; 2]>,
 }
 
 /// What a page sent of one trial.
@@ -148,9 +150,12 @@ impl Store {
         new: &NewAnswer,
         next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Appended, E> {
-        let NewAnswer { trial_index, answer, payload } = new.clone();
+        let NewAnswer { trial_index, answer, payload, stimulus_size } = new.clone();
         let sent = SentAnswer { trial_index, payload, known: None };
-        Ok(self.take_answer(session, sent, |_| Ok(answer), next).await?.appended)
+        Ok(self
+            .take_answer(session, sent, move |_| Ok(Checked { answer, stimulus_size }), next)
+            .await?
+            .appended)
     }
 
     /// Takes what a page sent, all in one transaction: `check` says what the answer to the trial is, [`Store::append_answer`] has the rest.
@@ -161,7 +166,7 @@ impl Store {
         &self,
         session: &Session,
         sent: SentAnswer,
-        check: impl FnOnce(&kelir_study::Trial) -> Result<String, E> + Send + 'static,
+        check: impl FnOnce(&kelir_study::Trial) -> Result<Checked, E> + Send + 'static,
         next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Taken, E> {
         let session = session.clone();
@@ -200,7 +205,7 @@ fn take<E>(
     writer: &Connection,
     session: &Session,
     sent: SentAnswer,
-    check: impl FnOnce(&kelir_study::Trial) -> Result<String, E>,
+    check: impl FnOnce(&kelir_study::Trial) -> Result<Checked, E>,
     next: impl FnOnce(Progress) -> Result<NextTrials, E>,
 ) -> Result<Taken, Refused<E>> {
     let SentAnswer { trial_index, payload, known } = sent;
@@ -209,8 +214,9 @@ fn take<E>(
         let appended = Appended::NoSuchTrial;
         return Ok(Taken { appended, next_trial: None, more: false, trials: vec![], answered: vec![] });
     };
-    let answer = check(&planned.trial).map_err(Refused::Caller)?;
-    let appended = append(writer, session, &planned, &NewAnswer { trial_index, answer, payload }, next)?;
+    let Checked { answer, stimulus_size } = check(&planned.trial).map_err(Refused::Caller)?;
+    let new = NewAnswer { trial_index, answer, payload, stimulus_size };
+    let appended = append(writer, session, &planned, &new, next)?;
     let (mut trials, mut answered) = (Vec::new(), Vec::new());
     if let Some(known) = known {
         trials = decided(writer, session_id, known)?;
@@ -353,7 +359,7 @@ impl Head {
             session.session_id,
             new.trial_index,
             planned.trial.trial.name(),
-            planned.shown()?,
+            planned.shown(new.stimulus_size)?,
             now,
             answer_hash,
             self.row_hash,
