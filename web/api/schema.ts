@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 3fed1cda9b7a5211735503d6740662ac02160b0943f2aeee6491694b3163ed25 cc37bdca1c6db0d157b23e62914f60aa436da27750721df22ec49b7fb9664cc2
+// Generated from openapi.json by `npm run types`; do not edit. 8c296b101fc062225f9f83b5d5d70a6414cb37631f4e15bbc6277a7b6a395243 71b04b85b4a9c12b2b1ab6f9d00917b06b1f07377ad21f3bbb5084eea1699391
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -1085,9 +1085,9 @@ export interface components {
             /** @description Technique name, such as `pa` or `mc`. */
             technique: string;
         } | {
-            /** @description Item id → path relative to the study file. */
+            /** @description By item id. */
             files: {
-                [key: string]: string;
+                [key: string]: components["schemas"]["Pictures"];
             };
             /** @enum {string} */
             source: "files";
@@ -1195,6 +1195,19 @@ export interface components {
          * @enum {string}
          */
         Direction: "rising" | "falling";
+        /** @description In which sizes stimuli are made and shown. */
+        Display: {
+            /** @description What a page does with more room than a size fills. */
+            fit: components["schemas"]["Fit"];
+            /** @description Sizes [width, height] at which each stimulus is made, in pixels, by rising width. */
+            sizes: number[][];
+        };
+        /** @description How stimuli stand on displays that differ, as far as the file says so. */
+        DisplayRules: {
+            fit?: components["schemas"]["Fit"] | null;
+            /** @description Sizes [width, height] at which each stimulus is made, by rising width, in pixels; none: the study's `size` alone. */
+            sizes?: number[][];
+        };
         /** @description How far a mean lies from its null value, in standard deviations. */
         EffectSize: {
             /**
@@ -1347,6 +1360,8 @@ export interface components {
             /** @description What was found there, long texts cut; absent where the field is missing, or secret. */
             value?: unknown;
         };
+        /** @description What a page does where there is more room than a size fills at one device pixel a stimulus pixel. */
+        Fit: "native" | "integer" | "fill";
         /** @description What can be known of a session besides its answers. */
         Flag: "repeated_id" | "many_starts" | "faster_than_clock" | "no_response_time";
         /** @description How many sessions something was noticed of. */
@@ -1817,6 +1832,13 @@ export interface components {
              */
             started: number;
         };
+        /** @description Picture files of one item: paths relative to the study file. */
+        Pictures: string | string[];
+        /**
+         * Format: int32
+         * @description A length in whole pixels.
+         */
+        Pixels: number;
         /** @description A version of a study and what it has gathered. */
         PooledVersion: {
             /**
@@ -2224,6 +2246,20 @@ export interface components {
         };
         /** @description How far a session is. */
         SessionStatus: "consent" | "in_progress" | "completed";
+        /** @description How often stimuli were shown at a size, and how large that was on participants' displays. */
+        ShownAt: {
+            /**
+             * Format: int64
+             * @description Answers given to stimuli of this size, of those who are judged.
+             */
+            answers: number;
+            /** @description Least and greatest width, CSS px; null where no page said so. */
+            css_width_px?: number[] | null;
+            /** @description Least and greatest device pixels a stimulus pixel, 1 being native; null where no page said so. */
+            scale?: number[] | null;
+            /** @description [width, height] in the stimuli's own pixels; [0, 0] where that was never known. */
+            size: number[];
+        };
         /** @description One of the two pictures. */
         Side: "left" | "right";
         /**
@@ -2263,6 +2299,23 @@ export interface components {
              * @description Sum of the (mid)ranks of the values above mu.
              */
             v: number;
+        };
+        /** @description What a trial shows at one size. */
+        SizedStimuli: {
+            /**
+             * Format: int32
+             * @description Height in pixels.
+             */
+            height: number;
+            /** @description What is shown, by role. */
+            shown: {
+                [key: string]: components["schemas"]["StimulusRef"];
+            };
+            /**
+             * Format: int32
+             * @description Width in pixels.
+             */
+            width: number;
         };
         /** @description A split of binary answers and its t. */
         Split: {
@@ -2366,6 +2419,8 @@ export interface components {
             provenance: unknown;
             /** @description Hash of the stimulus's file. */
             sha256: string;
+            /** @description [width, height] in pixels; [0, 0] where that was never known. */
+            size: number[];
         };
         /**
          * @description The bytes of one stimulus as this session gets them: what they hash to and where they are. Other sessions get other bytes and
@@ -2392,6 +2447,8 @@ export interface components {
         };
         /** @description What a study says of itself before anybody takes part. */
         Study: {
+            /** @description In which sizes stimuli are made and shown. */
+            display: components["schemas"]["Display"];
             /**
              * Format: int32
              * @description How long taking part is said to take, in minutes.
@@ -2407,7 +2464,7 @@ export interface components {
             question: string;
             /** @description When an input counts as a response. */
             response: components["schemas"]["ResponseRules"];
-            /** @description Stimulus size [width, height] in pixels. */
+            /** @description Stimulus size [width, height] in pixels; the smallest where there are several. */
             size: number[];
             /**
              * Format: double
@@ -2435,6 +2492,8 @@ export interface components {
             conditions: {
                 [key: string]: components["schemas"]["Condition"];
             };
+            /** @description In which sizes stimuli are made and shown, as far as the file says so. */
+            display?: components["schemas"]["DisplayRules"];
             /**
              * Format: int32
              * @description Whose defaults the file has; files without one have the first's.
@@ -2467,7 +2526,7 @@ export interface components {
             seed: number;
             /** @description Whose visit is whose. */
             session?: components["schemas"]["SessionRules"];
-            /** @description Stimulus size [width, height] in pixels. */
+            /** @description Stimulus size [width, height] in pixels; the smallest where there are several. */
             size: number[];
             /**
              * Format: double
@@ -2518,6 +2577,8 @@ export interface components {
             scale_with_excluded?: components["schemas"]["ScaleIntervals"] | null;
             /** @description The study's rules of screening. */
             screening: components["schemas"]["Screening"];
+            /** @description In which sizes it was shown, by rising size. */
+            shown: components["schemas"]["ShownAt"][];
             /** @description Who is judged, and who is not. */
             standing: components["schemas"]["Standing"];
             /** @description What was shown, with how it was made and its measured error. */
@@ -2537,6 +2598,8 @@ export interface components {
             blocks_with_excluded?: components["schemas"]["BlockSummary"][] | null;
             /** @description What the pooled versions do not show alike. */
             different_stimuli: components["schemas"]["DifferentStimulus"][];
+            /** @description In which size whom a stimulus is shown, in words. */
+            display: string;
             /** @description Who is left out by the study's rules of screening, and why. */
             excluded: components["schemas"]["Excluded"][];
             /** @description Other versions of the study that have sessions; their answers are not in these results. */
@@ -2722,6 +2785,8 @@ export interface components {
              * @description From the first frame at which an answer was possible (the stimuli in view, or the question after two intervals) to the answer.
              */
             rt: number;
+            /** @description Width and height of the size at which the stimuli were shown, in their own pixels: one of the study's. Absent: the smallest. */
+            stimulus_size?: components["schemas"]["Pixels"][] | null;
             /**
              * Format: double
              * @description From the start of the page's session to the answer.
@@ -2833,7 +2898,7 @@ export interface components {
             block_index: number;
             /**
              * Format: int32
-             * @description Height of its stimuli in pixels.
+             * @description Height in pixels of the smallest size.
              */
             height: number;
             /**
@@ -2843,8 +2908,10 @@ export interface components {
             item_index: number;
             /** @description Stills or animations. */
             kind: components["schemas"]["Kind"];
+            /** @description The same at each further size, by rising width; all stimuli of a trial are shown at one size. */
+            larger: components["schemas"]["SizedStimuli"][];
             settings: components["schemas"]["TrialSettings"] | null;
-            /** @description What is shown, by role: `left` and `right`, or `first` and `second`. */
+            /** @description What is shown at the study's smallest size, by role: `left` and `right`, or `first` and `second`. */
             shown: {
                 [key: string]: components["schemas"]["StimulusRef"];
             };
@@ -2857,7 +2924,7 @@ export interface components {
             trial_index: number;
             /**
              * Format: int32
-             * @description Width of its stimuli in pixels.
+             * @description Width in pixels of the smallest size.
              */
             width: number;
         };

@@ -18,11 +18,11 @@ pub use links::{Link, NewLink, Trying, VisitKind};
 pub use lists::ListQuery;
 pub use problem::{Problem, ProblemCode, StoredAnswer};
 pub use sessions::{
-    Acknowledgement, Completion, CreatedSession, Known, NewSession, SessionState, SessionStatus, StimulusRef,
-    Trial,
+    Acknowledgement, Completion, CreatedSession, Known, NewSession, SessionState, SessionStatus,
+    SizedStimuli, StimulusRef, Trial,
 };
 pub use studies::{
-    Codebook, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, VersionList,
+    Codebook, Display, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, VersionList,
 };
 pub use versions::{Pooling, version_ref};
 
