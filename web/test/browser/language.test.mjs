@@ -40,8 +40,7 @@ test("in Arabic the text runs from right to left, and left stays left", async (t
   await v.hook("start").click();
   const plan = v.mock.stuff.trials;
   for (const [i, side, key] of [[0, "left", "ArrowLeft"], [1, "right", "ArrowRight"]]) {
-    await v.page.locator(".pair.shown").waitFor();
-    await painted(v.page);
+    await v.page.locator(`.pair.shown [data-sha256="${plan[i].shown.left.sha256}"]:not([aria-disabled])`).waitFor();
     const at = async (one) => ({ x: (await v.hook(`choice-${one}`).boundingBox()).x, sha256: await v.hook(`choice-${one}`).getAttribute("data-sha256") });
     const [left, right] = [await at("left"), await at("right")];
     assert.ok(left.x < right.x);
