@@ -18,8 +18,8 @@ pub use links::{Link, NewLink, Trying, VisitKind};
 pub use lists::ListQuery;
 pub use problem::{Problem, ProblemCode, StoredAnswer};
 pub use sessions::{
-    Acknowledgement, Completion, CreatedSession, Known, NewSession, SessionState, SessionStatus, StimulusRef,
-    Trial,
+    Acknowledgement, Completion, CreatedSession, Held, Known, NewSession, SessionState, SessionStatus,
+    StimulusRef, Trial,
 };
 pub use studies::{
     Codebook, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, VersionList,
