@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. a18293e81553313a3be08f24d948e98ac78e3dc24af1d6c7936e804e41fd47e6 2cf69660a0b58232286d60cbcf83ef7e41e2c637bd3802e6f25ce653c603a99e
+// Generated from openapi.json by `npm run types`; do not edit. b1ce5fe2153ad3c5ec7b3d8b7327412cb29ada38243ab5d5d0a965a2ac542bc0 aedd7430671ea0eb7538538c64e94b3990a092eaa102d2cee6851d83f05911de
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -2603,6 +2603,8 @@ export interface components {
             title: string;
             /** @description The version that is served; null while its stimuli are not all made. */
             version: string | null;
+            /** @description What may be a mistake in its file, and is served all the same. */
+            warnings: string[];
         };
         /** @description A version of a study: what was asked and what was shown. */
         StudyVersion: {

@@ -6,10 +6,9 @@ use anyhow::Result;
 use kelir_server::links::{Links, Visit, now};
 use kelir_server::shipped::{Shipped, is_file};
 use kelir_server::{Library, StudyFileError, check_study, results};
-use kelir_study::Problem;
 use serde_json::json;
 
-use super::checked::Checked;
+use super::checked::{Checked, problem_json};
 use super::stored::{block_on, results_error};
 use crate::bad_input;
 use crate::output::{Format, Printed, csv, print, print_json, table};
@@ -164,11 +163,11 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
                 let most = if adaptive { "at most " } else { "" };
                 let about = json!({ "study": study.id, "blocks": blocks, "trials_at_most": trials, "adaptive": adaptive,
                     "design_hash": study.design_hash() });
-                checked.good(file, &format!("blocks: {blocks}, trials: {most}{trials}"), about)?;
+                let details = format!("blocks: {blocks}, trials: {most}{trials}");
+                checked.good(file, &details, about, &study.warnings(&file.display().to_string()))?;
             }
             Err(StudyFileError::Invalid(errors)) => {
-                let fields = |p: &Problem| json!({ "file": p.file, "field": p.field, "value": p.value, "rule": p.rule });
-                checked.wrong(file, errors.to_string(), errors.0.iter().map(fields).collect());
+                checked.wrong(file, errors.to_string(), errors.0.iter().map(problem_json).collect());
             }
             Err(error) => checked.unreadable(file, error.to_string()),
         }
