@@ -162,7 +162,7 @@ fn hostile_images_are_refused() {
 fn a_wrong_study_names_every_problem() {
     let folder = tempfile::tempdir().unwrap();
     let good = std::fs::read_to_string(root().join("stimuli/studies/shadow-puppets.toml")).unwrap();
-    let wrong = good.replace("size = [592, 333]", "size = [592, 0]").replacen(
+    let wrong = good.replace("sizes = [[592, 333]", "sizes = [[592, 0]").replacen(
         "kind = \"still\"",
         "kind = \"painting\"",
         1,

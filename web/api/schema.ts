@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. b1ce5fe2153ad3c5ec7b3d8b7327412cb29ada38243ab5d5d0a965a2ac542bc0 aedd7430671ea0eb7538538c64e94b3990a092eaa102d2cee6851d83f05911de
+// Generated from openapi.json by `npm run types`; do not edit. d035aa5fd935c5dd1cc65713ba25197040a7fbf8370b1c14b3a05a1a48790fcf a256f1146bb8826c0206de57374e9480ab8d0c9e5b0ef50312646b88470b0e66
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -1104,9 +1104,9 @@ export interface components {
             /** @description Technique name, such as `pa` or `mc`. */
             technique: string;
         } | {
-            /** @description Item id → path relative to the study file. */
+            /** @description By item id. */
             files: {
-                [key: string]: string;
+                [key: string]: components["schemas"]["Pictures"];
             };
             /** @enum {string} */
             source: "files";
@@ -1214,6 +1214,19 @@ export interface components {
          * @enum {string}
          */
         Direction: "rising" | "falling";
+        /** @description In which sizes stimuli are made and shown. */
+        Display: {
+            /** @description What a page does with more room than a size fills. */
+            fit: components["schemas"]["Fit"];
+            /** @description Sizes [width, height] at which each stimulus is made, in pixels, by rising width. */
+            sizes: number[][];
+        };
+        /** @description How stimuli stand on displays that differ, as far as the file says so. */
+        DisplayRules: {
+            fit?: components["schemas"]["Fit"] | null;
+            /** @description Sizes [width, height] at which each stimulus is made, by rising width, in pixels; none: the study's `size` alone. */
+            sizes?: number[][];
+        };
         /** @description How far a mean lies from its null value, in standard deviations. */
         EffectSize: {
             /**
@@ -1366,6 +1379,8 @@ export interface components {
             /** @description What was found there, long texts cut; absent where the field is missing, or secret. */
             value?: unknown;
         };
+        /** @description What a page does where there is more room than a size fills at one device pixel a stimulus pixel. */
+        Fit: "native" | "integer" | "fill";
         /** @description What can be known of a session besides its answers. */
         Flag: "repeated_id" | "many_starts" | "faster_than_clock" | "no_response_time";
         /** @description How many sessions something was noticed of. */
@@ -1836,6 +1851,13 @@ export interface components {
              */
             started: number;
         };
+        /** @description Picture files of one item: paths relative to the study file. */
+        Pictures: string | string[];
+        /**
+         * Format: int32
+         * @description A length in whole pixels.
+         */
+        Pixels: number;
         /** @description A version of a study and what it has gathered. */
         PooledVersion: {
             /**
@@ -2243,6 +2265,20 @@ export interface components {
         };
         /** @description How far a session is. */
         SessionStatus: "consent" | "in_progress" | "completed";
+        /** @description How often stimuli were shown at a size, and how large that was on participants' displays. */
+        ShownAt: {
+            /**
+             * Format: int64
+             * @description Answers given to stimuli of this size, of those who are judged.
+             */
+            answers: number;
+            /** @description Least and greatest width, CSS px; null where no page said so. */
+            css_width_px?: number[] | null;
+            /** @description Least and greatest device pixels a stimulus pixel, 1 being native; null where no page said so. */
+            scale?: number[] | null;
+            /** @description [width, height] in the stimuli's own pixels; [0, 0] where that was never known. */
+            size: number[];
+        };
         /** @description One of the two pictures. */
         Side: "left" | "right";
         /**
@@ -2282,6 +2318,23 @@ export interface components {
              * @description Sum of the (mid)ranks of the values above mu.
              */
             v: number;
+        };
+        /** @description What a trial shows at one size. */
+        SizedStimuli: {
+            /**
+             * Format: int32
+             * @description Height in pixels.
+             */
+            height: number;
+            /** @description What is shown, by role. */
+            shown: {
+                [key: string]: components["schemas"]["StimulusRef"];
+            };
+            /**
+             * Format: int32
+             * @description Width in pixels.
+             */
+            width: number;
         };
         /** @description A split of binary answers and its t. */
         Split: {
@@ -2389,6 +2442,8 @@ export interface components {
             provenance: unknown;
             /** @description Hash of the stimulus's file. */
             sha256: string;
+            /** @description [width, height] in pixels; [0, 0] where that was never known. */
+            size: number[];
         };
         /**
          * @description The bytes of one stimulus as this session gets them: what they hash to and where they are. Other sessions get other bytes and
@@ -2415,6 +2470,8 @@ export interface components {
         };
         /** @description What a study says of itself before anybody takes part. */
         Study: {
+            /** @description In which sizes stimuli are made and shown. */
+            display: components["schemas"]["Display"];
             /**
              * Format: int32
              * @description How long taking part is said to take, in minutes.
@@ -2430,7 +2487,7 @@ export interface components {
             question: string;
             /** @description When an input counts as a response. */
             response: components["schemas"]["ResponseRules"];
-            /** @description Stimulus size [width, height] in pixels. */
+            /** @description Stimulus size [width, height] in pixels; the smallest where there are several. */
             size: number[];
             /**
              * Format: double
@@ -2458,6 +2515,8 @@ export interface components {
             conditions: {
                 [key: string]: components["schemas"]["Condition"];
             };
+            /** @description In which sizes stimuli are made and shown, as far as the file says so. */
+            display?: components["schemas"]["DisplayRules"];
             /**
              * Format: int32
              * @description Whose defaults the file has; files without one have the first's.
@@ -2490,7 +2549,7 @@ export interface components {
             seed: number;
             /** @description Whose visit is whose. */
             session?: components["schemas"]["SessionRules"];
-            /** @description Stimulus size [width, height] in pixels. */
+            /** @description Stimulus size [width, height] in pixels; the smallest where there are several. */
             size: number[];
             /**
              * Format: double
@@ -2541,6 +2600,8 @@ export interface components {
             scale_with_excluded?: components["schemas"]["ScaleIntervals"] | null;
             /** @description The study's rules of screening. */
             screening: components["schemas"]["Screening"];
+            /** @description In which sizes it was shown, by rising size. */
+            shown: components["schemas"]["ShownAt"][];
             /** @description Who is judged, and who is not. */
             standing: components["schemas"]["Standing"];
             /** @description What was shown, with how it was made and its measured error. */
@@ -2560,6 +2621,8 @@ export interface components {
             blocks_with_excluded?: components["schemas"]["BlockSummary"][] | null;
             /** @description What the pooled versions do not show alike. */
             different_stimuli: components["schemas"]["DifferentStimulus"][];
+            /** @description In which size whom a stimulus is shown, in words. */
+            display: string;
             /** @description Who is left out by the study's rules of screening, and why. */
             excluded: components["schemas"]["Excluded"][];
             /** @description Other versions of the study that have sessions; their answers are not in these results. */
@@ -2745,6 +2808,8 @@ export interface components {
              * @description From the first frame at which an answer was possible (the stimuli in view, or the question after two intervals) to the answer.
              */
             rt: number;
+            /** @description Width and height of the size at which the stimuli were shown, in their own pixels: one of the study's. Absent: the smallest. */
+            stimulus_size?: components["schemas"]["Pixels"][] | null;
             /**
              * Format: double
              * @description From the start of the page's session to the answer.
@@ -2856,7 +2921,7 @@ export interface components {
             block_index: number;
             /**
              * Format: int32
-             * @description Height of its stimuli in pixels.
+             * @description Height in pixels of the smallest size.
              */
             height: number;
             /**
@@ -2866,8 +2931,10 @@ export interface components {
             item_index: number;
             /** @description Stills or animations. */
             kind: components["schemas"]["Kind"];
+            /** @description The same at each further size, by rising width; all stimuli of a trial are shown at one size. */
+            larger: components["schemas"]["SizedStimuli"][];
             settings: components["schemas"]["TrialSettings"] | null;
-            /** @description What is shown, by role: `left` and `right`, or `first` and `second`. */
+            /** @description What is shown at the study's smallest size, by role: `left` and `right`, or `first` and `second`. */
             shown: {
                 [key: string]: components["schemas"]["StimulusRef"];
             };
@@ -2880,7 +2947,7 @@ export interface components {
             trial_index: number;
             /**
              * Format: int32
-             * @description Width of its stimuli in pixels.
+             * @description Width in pixels of the smallest size.
              */
             width: number;
         };

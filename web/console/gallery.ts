@@ -12,12 +12,19 @@ export function gallery(stimuli: readonly Stimulus[], different: Results["differ
     items.set(stimulus.item, [...(items.get(stimulus.item) ?? []), stimulus]);
   }
   const differs = ({ item, condition }: Stimulus) => different.some((other) => other.item === item && other.condition === condition);
+  const larger = (than: Stimulus) => stimuli.filter(({ item, condition, size }) => item === than.item && condition === than.condition && width(size) > width(than.size));
   return [...items].map(([name, members]) =>
-    h("section", { class: "pair" }, h("h3", {}, name), h("div", { class: "conditions" }, ...members.map((stimulus) => card(stimulus, differs(stimulus))))),
+    h("section", { class: "pair" }, h("h3", {}, name), h("div", { class: "conditions" }, ...smallest(members).map((stimulus) => card(stimulus, larger(stimulus), differs(stimulus))))),
   );
 }
 
-function card(stimulus: Stimulus, differs: boolean): HTMLElement {
+const width = ([width = 0]: readonly number[]) => width;
+
+/** Stimuli that are made in several sizes, each at its smallest. */
+export const smallest = <T extends Pick<Stimulus, "item" | "condition" | "size">>(stimuli: readonly T[]): T[] =>
+  stimuli.filter((one) => !stimuli.some((other) => other.item === one.item && other.condition === one.condition && width(other.size) < width(one.size)));
+
+function card(stimulus: Stimulus, larger: readonly Stimulus[], differs: boolean): HTMLElement {
   const facts: Array<[string, unknown]> = [["sha256", stimulus.sha256], ...flatten({ pixels_sha256: stimulus.pixels_sha256 }), ...flatten(stimulus.provenance)];
   return h(
     "figure",
@@ -29,6 +36,7 @@ function card(stimulus: Stimulus, differs: boolean): HTMLElement {
       h("strong", {}, stimulus.condition),
       ...(differs ? [h("span", { class: "warning" }, "not the same in all pooled versions")] : []),
       ...errorOf(stimulus),
+      ...(larger.length === 0 ? [] : [h("span", { class: "fact" }, `${stimulus.size.join(" × ")} px; also at `, ...links(larger))]),
       h(
         "details",
         {},
@@ -38,6 +46,10 @@ function card(stimulus: Stimulus, differs: boolean): HTMLElement {
     ),
   );
 }
+
+/** The same at other sizes, each to look at; an animation's is its list of frames. */
+const links = (others: readonly Stimulus[]) =>
+  others.flatMap(({ size, sha256 }, i) => [...(i > 0 ? [", "] : []), h("a", { href: address(sha256), target: "_blank", rel: "noopener" }, size.join(" × "))]);
 
 /** What is known of a stimulus's error: against a reference, where shadows are soft (there techniques differ), or its own spread, or nothing. */
 function errorOf({ provenance }: Stimulus): HTMLElement[] {

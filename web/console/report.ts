@@ -1,6 +1,7 @@
 /** What the t-test leaves out: how large, how sure, how equivalent, and what a reader must not conclude. */
 import { h } from "../shared/dom.ts";
 import { count, fixed, interval, pValue, significant } from "../shared/format.ts";
+import { smallest } from "./gallery.ts";
 import type { BlockReport, Coefficient, Interval, Proportion, Report } from "./api.ts";
 import { copyButton, number, tableText } from "./copy.ts";
 import { errorPlot, points } from "./scatter.ts";
@@ -55,7 +56,7 @@ function times(blocks: readonly BlockReport[]): Node[] {
 }
 
 function errors(blocks: readonly BlockReport[], report: Report, width: number): Node[] {
-  const all = points(blocks, report.stimuli);
+  const all = points(blocks, smallest(report.stimuli));
   const heading = h("h3", {}, "Error and preference");
   if (all.length === 0) return [heading, h("p", { class: "empty" }, "No stimulus with answers has a measured error yet.")];
   return [

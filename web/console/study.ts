@@ -78,10 +78,10 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
     list?.recount(versions);
     section("participants", [results?.participants, results?.standing, results?.excluded], () => participants(results));
     if (results !== null) {
-      const { blocks, scale, standing, stimuli, different_stimuli } = results;
+      const { blocks, scale, standing, stimuli, different_stimuli, display } = results;
       section("choices", [blocks, scale, standing.summary], () => choices(results));
       judge(selection, results);
-      section("stimuli", [stimuli, different_stimuli], () => [h("h2", {}, "Stimuli"), ...(stimuli.length > 0 ? gallery(stimuli, different_stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
+      section("stimuli", [stimuli, different_stimuli, display], () => [h("h2", {}, "Stimuli"), h("p", { class: "quiet", "data-testid": "display" }, display), ...(stimuli.length > 0 ? gallery(stimuli, different_stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
       section("data", [results.version, selection.pooled], () => data({ ...selection, version: results.version }));
     }
     updated.textContent = `Updated ${clockTime(new Date())}`;

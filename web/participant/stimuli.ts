@@ -1,13 +1,13 @@
 /** Stimuli, fetched in the order in which they are needed, checked against their hash and decoded before anybody sees them. */
 import type { StimulusRef, Trial } from "./api.ts";
 import { download } from "./download.ts";
+import type { Pixels } from "./layout.ts";
 import { animation, type Head, still } from "./packed.ts";
 
 export { Unusable } from "./packed.ts";
 
-export type Picture =
-  | { kind: "still"; image: HTMLImageElement }
-  | { kind: "animation"; manifest: Pick<Head, "fps" | "loop">; frames: ImageBitmap[] };
+/** What is shown, with the hash of its bytes and its size in its own pixels. */
+export type Picture = { sha256: string; pixels: Pixels } & ({ kind: "still"; image: HTMLImageElement } | { kind: "animation"; manifest: Pick<Head, "fps" | "loop">; frames: ImageBitmap[] });
 
 /** A trial's pictures by role. */
 export type Pictures = Record<string, Picture>;
@@ -20,15 +20,18 @@ export interface Progress {
   bytes: number;
 }
 
+/** Of a trial what the loader needs: at the size that is to be shown. */
+export type Sized = Pick<Trial, "trial_index" | "kind" | "shown">;
+
 export interface Loader {
-  /** Gets the stimuli of these trials, the first ones first, while other things are on the screen. */
-  ahead(trials: readonly Trial[]): void;
+  /** Gets the stimuli of these trials, the first ones first, while other things are on the screen; what else has not begun to come is left. */
+  ahead(trials: readonly Sized[]): void;
   /** Gets a trial's stimuli while something else is on the screen; decodes them too, unless that could disturb an animation. */
-  preload(trial: Trial, decode: boolean): void;
+  preload(trial: Sized, decode: boolean): void;
   /** All its stimuli, ready to be painted. Rejects with `Unusable` when trying again would not help. */
-  load(trial: Trial): Promise<Pictures>;
-  /** Frees what `load` made for a trial that is over. */
-  release(trial: Trial): void;
+  load(trial: Sized): Promise<Pictures>;
+  /** Frees what `load` made for a trial that is over, at whatever size. */
+  release(trial: Pick<Sized, "trial_index">): void;
 }
 
 /** Requests under way at once: a trial's two. More would make its pictures wait for those of later trials. */
@@ -49,7 +52,7 @@ interface Wanted {
 /** `onWaiting` hears `true` when the line keeps us waiting, and `false` when it is back; `onProgress` hears of everything that comes. */
 export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (progress: Progress) => void = () => {}): Loader {
   const wanted = new Map<string, Wanted>();
-  const ready = new Map<number, Promise<Pictures>>();
+  const ready = new Map<number, { key: string; refs: StimulusRef[]; pictures: Promise<Pictures> }>();
   /** Trials whose pictures are waited for: these are fetched whatever is held already. */
   const urgent = new Set<number>();
   const progress: Progress = { here: 0, of: 0, bytes: 0 };
@@ -109,28 +112,71 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
     return entry;
   };
 
-  const fetching = (trial: Trial) => Object.values(trial.shown).map((ref) => want(ref, trial.trial_index));
+  const fetching = (trial: Sized) => Object.values(trial.shown).map((ref) => want(ref, trial.trial_index));
 
-  const picture = async (trial: Trial, ref: StimulusRef): Promise<Picture> => {
-    const bytes = await want(ref, trial.trial_index).bytes;
-    if (trial.kind === "still") return { kind: "still", image: await still(bytes) };
-    const { head, frames } = await animation(bytes);
-    return { kind: "animation", manifest: head, frames };
+  const forget = (sha256: string) => {
+    wanted.delete(sha256);
+    progress.of -= 1;
   };
 
-  const load = (trial: Trial): Promise<Pictures> => {
+  /** Leaves what nobody waits for and has not begun: a window that changed asks for other sizes. */
+  const drop = (kept: readonly Sized[]) => {
+    const refs = [...kept.flatMap(({ shown }) => Object.values(shown)), ...[...ready.values()].flatMap(({ refs }) => refs)];
+    const named = new Set(refs.map(({ sha256 }) => sha256));
+    for (const [sha256, { state }] of [...wanted]) if (state === "waiting" && !named.has(sha256)) forget(sha256);
+  };
+
+  const picture = async (trial: Sized, ref: StimulusRef): Promise<Picture> => {
+    const bytes = await want(ref, trial.trial_index).bytes;
+    const { sha256 } = ref;
+    if (trial.kind === "still") {
+      const image = await still(bytes);
+      return { sha256, pixels: [image.naturalWidth, image.naturalHeight], kind: "still", image };
+    }
+    const { head, frames } = await animation(bytes);
+    return { sha256, pixels: [head.width, head.height], kind: "animation", manifest: head, frames };
+  };
+
+  const load = (trial: Sized): Promise<Pictures> => {
+    const key = JSON.stringify(Object.values(trial.shown).map(({ sha256 }) => sha256));
     const known = ready.get(trial.trial_index);
-    if (known !== undefined) return known;
+    if (known?.key === key) return known.pictures;
+    if (known !== undefined) free(trial.trial_index);
     const all = Object.entries(trial.shown).map(async ([role, ref]) => [role, await picture(trial, ref)] as const);
     const pictures = Promise.all(all).then((made) => Object.fromEntries(made));
-    ready.set(trial.trial_index, pictures);
-    pictures.catch(() => ready.delete(trial.trial_index)); // the next `load` tries again
+    ready.set(trial.trial_index, { key, refs: Object.values(trial.shown), pictures });
+    pictures.catch(() => ready.get(trial.trial_index)?.key === key && ready.delete(trial.trial_index)); // the next `load` tries again
     pump();
     return pictures;
   };
 
+  /** Frees what was decoded for a trial, and its bytes where many are held. */
+  const free = (trial: number) => {
+    const made = ready.get(trial);
+    ready.delete(trial);
+    for (const { sha256 } of made?.refs ?? []) {
+      const entry = wanted.get(sha256);
+      if (entry?.state === "waiting") forget(sha256);
+      // A later trial that shows it too gets it out of the browser's cache.
+      if (entry?.state !== "here" || held <= MOST_AHEAD / 2) continue;
+      wanted.delete(sha256);
+      void entry.bytes.then((bytes) => {
+        held -= bytes.length;
+        pump();
+      });
+    }
+    const close = (pictures: Pictures) => {
+      for (const picture of Object.values(pictures)) {
+        if (picture.kind === "still") URL.revokeObjectURL(picture.image.src);
+        else for (const bitmap of picture.frames) bitmap.close();
+      }
+    };
+    made?.pictures.then(close, () => undefined);
+  };
+
   return {
     ahead(trials) {
+      drop(trials);
       trials.forEach(fetching);
       pump();
     },
@@ -143,26 +189,9 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
       urgent.add(trial.trial_index);
       return load(trial);
     },
-    release(trial) {
-      const made = ready.get(trial.trial_index);
-      ready.delete(trial.trial_index);
-      urgent.delete(trial.trial_index);
-      for (const ref of Object.values(trial.shown)) {
-        const entry = wanted.get(ref.sha256);
-        // A later trial that shows it too gets it out of the browser's cache.
-        if (entry?.state !== "here" || held <= MOST_AHEAD / 2) continue;
-        wanted.delete(ref.sha256);
-        void entry.bytes.then((bytes) => {
-          held -= bytes.length;
-          pump();
-        });
-      }
-      void made?.then((pictures) => {
-        for (const picture of Object.values(pictures)) {
-          if (picture.kind === "still") URL.revokeObjectURL(picture.image.src);
-          else for (const bitmap of picture.frames) bitmap.close();
-        }
-      });
+    release({ trial_index }) {
+      urgent.delete(trial_index);
+      free(trial_index);
     },
   };
 }

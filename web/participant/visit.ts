@@ -5,11 +5,13 @@ import { Refused } from "../shared/http.ts";
 import type { Trial } from "./api.ts";
 import { measureRefresh } from "./display.ts";
 import { inLanguage, type Reading } from "./language.ts";
+import type { Pixels } from "./layout.ts";
 import { say } from "./notice.ts";
 import { askAgain, consentContent, display, Ended, instructionsContent, showThanks } from "./pages.ts";
 import { position } from "./plan.ts";
 import type { Session } from "./session.ts";
-import { openLoader, type Pictures, type Progress, Unusable } from "./stimuli.ts";
+import { atSize, pickSize } from "./sizes.ts";
+import { openLoader, type Pictures, type Progress, type Sized, Unusable } from "./stimuli.ts";
 import TextPage, { showPage } from "./text-page.ts";
 import { loadKind, UnknownKind } from "./trials/kinds.ts";
 import { rulesOf, type TrialModule } from "./trials/module.ts";
@@ -70,7 +72,7 @@ export class Visit {
     if (!this.#instructed && !this.#session.begun) return this.#instructions(kinds, on_finish);
     this.#known();
     this.#session.takeAgain();
-    this.#loader.ahead(this.#session.remaining);
+    await this.#fetch();
     const trial = this.#session.remaining[0] ?? (await this.#left());
     return trial === null ? null : this.#trial(trial, await this.#kindFor(trial), on_finish);
   }
@@ -86,7 +88,7 @@ export class Visit {
       action: async () => {
         await this.#session.consent(this.#study.reading);
         this.#tab.has(this.#session.id);
-        this.#loader.ahead(this.#session.remaining);
+        await this.#fetch();
       },
       on_load: noTabStop,
       on_finish,
@@ -106,7 +108,7 @@ export class Visit {
         noTabStop();
         void this.#measure();
         const [first] = this.#session.remaining;
-        if (first !== undefined) this.#loader.preload(first, true);
+        if (first !== undefined) void this.#preload(first, true);
       },
       action: () => this.#measure(),
       on_finish,
@@ -118,11 +120,11 @@ export class Visit {
       study: this.#study,
       trial,
       position: position(this.#session.state ?? { trials: [], more: false, most_trials: 0 }, trial),
-      load: () => this.#load(trial),
+      load: () => this.#load(trial, kind),
       refreshPeriod: () => this.#measure(),
       onOnset: (decode) => {
         const next = this.#session.remaining[1];
-        if (next !== undefined) this.#loader.preload(next, decode);
+        if (next !== undefined) void this.#preload(next, decode);
       },
       onChoice: (data) => {
         const { name: trial_type, version: plugin_version } = kind.plugin.info;
@@ -182,11 +184,43 @@ export class Visit {
     if (this.#session.gone) throw new Ended(words("gone-title"), [words("gone")]);
   }
 
-  /** A trial's pictures; says how far they are when they are long in coming, for the screen is empty until then. */
-  async #load(trial: Trial): Promise<Pictures> {
+  /** Trials at the size that fits the window now; without those of a kind that is not known, which is said when their turn comes. */
+  async #sized(trials: readonly Trial[]): Promise<Sized[]> {
+    const picked = new Map<string, Pixels>();
+    const sized: Sized[] = [];
+    for (const trial of trials) {
+      const kind = await loadKind(trial.trial).catch(() => null);
+      if (kind === null) continue;
+      const pixels = picked.get(trial.trial) ?? pickSize(kind, this.#study);
+      picked.set(trial.trial, pixels);
+      sized.push(atSize(trial, pixels));
+    }
+    return sized;
+  }
+
+  /** Fetches what is left to show. */
+  async #fetch(): Promise<void> {
+    this.#loader.ahead(await this.#sized(this.#session.remaining));
+  }
+
+  async #preload(trial: Trial, decode: boolean): Promise<void> {
+    for (const sized of await this.#sized([trial])) this.#loader.preload(sized, decode);
+  }
+
+  /**
+   * A trial's pictures, at the size that fits the window when they are here; says how far they are when they are long in coming, for the screen is
+   * empty until then.
+   */
+  async #load(trial: Trial, kind: TrialModule): Promise<Pictures> {
     const slow = setTimeout(() => this.#tell({ awaited: true }), PATIENCE_MS);
+    const now = () => atSize(trial, pickSize(kind, this.#study));
     try {
-      return await this.#loader.load(trial);
+      for (let sized = now(); ; ) {
+        const pictures = await this.#loader.load(sized);
+        const then = sized;
+        sized = now();
+        if (sized.shown === then.shown) return pictures;
+      }
     } finally {
       clearTimeout(slow);
       this.#tell({ awaited: false });

@@ -5,12 +5,13 @@ import { flatten, measuredError, standardError } from "../console/provenance.ts"
 import { points } from "../console/scatter.ts";
 import { niceTicks } from "../console/strips.ts";
 import { statusText } from "../console/status.ts";
+import { smallest } from "../console/gallery.ts";
 import { pageOf, selectionOf } from "../console/versions.ts";
 
 const stimulus = (item: string, condition: string, rmse: number | null): Stimulus => {
   const errors = { count: 1, bias: 0, rmse: rmse ?? 0, p999: 0, max: 0 };
   const error = rmse === null ? null : { reference: { technique: "mc" }, frames: [0], all: { ...errors, rmse: 1 }, penumbra: errors, floor: null };
-  return { item, condition, sha256: "0", pixels_sha256: "0", provenance: { error } };
+  return { item, condition, size: [592, 333], sha256: "0", pixels_sha256: "0", provenance: { error } };
 };
 const block = (pair: string, chosen: number): BlockReport =>
   ({
@@ -28,6 +29,11 @@ test("stimuli without a measured error, of other pairs or of unknown conditions 
   const none = [stimulus("a", "pa", null), stimulus("z", "pa", 1), stimulus("a", "oracle", 1), stimulus("a", "mc", 0)];
   assert.deepEqual(points([block("a", 8)], none), []);
   assert.equal(points([block("a", 8)], [...none, stimulus("a", "mc", 1)]).length, 1);
+});
+
+test("what is drawn at several sizes is told once, at the smallest", () => {
+  const [a, b, c] = [stimulus("a", "pa", 1e-3), { ...stimulus("a", "pa", 2e-3), size: [1110, 624] }, { ...stimulus("a", "mc", 1e-3), size: [1110, 624] }];
+  assert.deepEqual(smallest([b, a, c]), [a, c]);
 });
 
 test("ticks are round and reach the largest value", () => {

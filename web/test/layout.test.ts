@@ -1,12 +1,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { fitOne, fitPair, inkOn, srgbCode } from "../participant/layout.ts";
+import { fitOne, fitPair, inkOn, type Layout, type Offered, srgbCode } from "../participant/layout.ts";
 
-const fit = (roomWidth: number, roomHeight: number, devicePixelRatio = 1) =>
-  fitPair({ width: 592, height: 333, roomWidth, roomHeight, devicePixelRatio });
+const one: Offered = { sizes: [[592, 333]], fit: "native" };
+const two = (fit: Offered["fit"]): Offered => ({ sizes: [[592, 333], [1110, 624]], fit });
+const fit = (roomWidth: number, roomHeight: number, devicePixelRatio = 1, offered = one) => fitPair(offered, { roomWidth, roomHeight, devicePixelRatio });
 
 test("two pictures of the study's size fit a 1280-pixel window side by side at native pixels", () => {
-  assert.deepEqual(fit(1280 - 28, 600), { arrangement: "side", scale: 1, width: 592, height: 333, gap: 30 });
+  assert.deepEqual(fit(1280 - 28, 600), { arrangement: "side", pixels: [592, 333], scale: 1, width: 592, height: 333, gap: 30 });
 });
 
 test("on a dense display a picture's pixels are the display's pixels", () => {
@@ -46,13 +47,68 @@ test("room that is one pixel short is noticed", () => {
 });
 
 test("one picture has the room of two", () => {
-  const one = (roomWidth: number, roomHeight: number, devicePixelRatio = 1) => fitOne({ width: 592, height: 333, roomWidth, roomHeight, devicePixelRatio });
-  assert.deepEqual(one(1252, 600), { scale: 1, width: 592, height: 333 });
-  assert.deepEqual(one(1252, 600, 2), { scale: 1, width: 296, height: 166.5 });
-  assert.deepEqual(one(362, 700), { scale: 362 / 592, width: 362, height: 204 });
-  assert.equal(one(592, 333).scale, 1);
-  assert.ok(one(591, 333).scale < 1);
-  assert.ok(one(592, 332).scale < 1);
+  const alone = (roomWidth: number, roomHeight: number, devicePixelRatio = 1, offered = one) => fitOne(offered, { roomWidth, roomHeight, devicePixelRatio });
+  const pixels = [592, 333];
+  assert.deepEqual(alone(1252, 600), { pixels, scale: 1, width: 592, height: 333 });
+  assert.deepEqual(alone(1252, 600, 2), { pixels, scale: 1, width: 296, height: 166.5 });
+  assert.deepEqual(alone(362, 700), { pixels, scale: 362 / 592, width: 362, height: 204 });
+  assert.equal(alone(592, 333).scale, 1);
+  assert.ok(alone(591, 333).scale < 1);
+  assert.ok(alone(592, 332).scale < 1);
+  // Where a pair has room for the smaller size alone, one picture has it for the larger.
+  assert.deepEqual(alone(1900, 900, 1, two("integer")), { pixels: [1110, 624], scale: 1, width: 1110, height: 624 });
+  assert.deepEqual(alone(1109, 900, 1, two("native")).pixels, pixels);
+});
+
+// Rooms are windows without 10 CSS pixels on either side and without question and position; right values by hand.
+const displays: Array<[string, Offered["fit"], [number, number, number], Omit<Layout, "gap" | "height">]> = [
+  // 370 × 3 = 1110 device pixels; two of 624 and a gap of 84 are 1332 of 1962.
+  ["a phone upright at three device pixels", "native", [370, 654, 3], { arrangement: "stack", pixels: [1110, 624], scale: 1, width: 370 }],
+  // 2 × 1110 + 84 = 2304 of 2472.
+  ["the same phone turned", "native", [824, 280, 3], { arrangement: "side", pixels: [1110, 624], scale: 1, width: 370 }],
+  // 340 × 3 = 1020: the larger has no room; 592 / 3.
+  ["a narrower phone", "integer", [340, 610, 3], { arrangement: "stack", pixels: [592, 333], scale: 1, width: 592 / 3 }],
+  ["the same, filled", "fill", [340, 610, 3], { arrangement: "stack", pixels: [1110, 624], scale: 1020 / 1110, width: 340 }],
+  ["1280 × 720", "integer", [1260, 540, 1], { arrangement: "side", pixels: [592, 333], scale: 1, width: 592 }],
+  // Stacked the larger would take 2 × 624 + 56 = 1304 of 900; the smaller is as large side by side.
+  ["1920 × 1080", "integer", [1900, 900, 1], { arrangement: "side", pixels: [592, 333], scale: 1, width: 592 }],
+  // 2 × 1110 + 56 = 2276 of 2540; the smaller, twice enlarged, would be 1184 wide, and is not what was drawn for it.
+  ["2560 × 1440", "integer", [2540, 1260, 1], { arrangement: "side", pixels: [1110, 624], scale: 1, width: 1110 }],
+  ["4K at two device pixels", "integer", [1900, 900, 2], { arrangement: "side", pixels: [1110, 624], scale: 1, width: 555 }],
+  // 1725 × 1.1 = 1897 whole device pixels; a gap of 31.
+  ["1920 × 1080 at 110%", "integer", [1725, 800, 1.1], { arrangement: "side", pixels: [592, 333], scale: 1, width: 592 / 1.1 }],
+  // 4 × 1110 + 111 = 4551 of 5100.
+  ["5K, whole multiples", "integer", [5100, 2700, 1], { arrangement: "side", pixels: [1110, 624], scale: 2, width: 2220 }],
+  ["5K, never enlarged", "native", [5100, 2700, 1], { arrangement: "side", pixels: [1110, 624], scale: 1, width: 1110 }],
+  // 2 × 2487 + 125 = 5099 of 5100.
+  ["5K, filled", "fill", [5100, 2700, 1], { arrangement: "side", pixels: [1110, 624], scale: 2487 / 1110, width: 2487 }],
+  // No size has room: 2 × 171 + 28 = 370.
+  ["a small window", "integer", [370, 150, 1], { arrangement: "side", pixels: [592, 333], scale: 171 / 592, width: 171 }],
+];
+for (const [name, rule, [roomWidth, roomHeight, devicePixelRatio], right] of displays) {
+  test(`the size on ${name} is the one worked out by hand`, () => {
+    const { gap: _, height, ...found } = fit(roomWidth, roomHeight, devicePixelRatio, two(rule));
+    assert.deepEqual(found, right);
+    assert.equal(Math.round(height * devicePixelRatio), Math.round((right.pixels[1] * right.width * devicePixelRatio) / right.pixels[0]));
+  });
+}
+
+test("whatever the room, all that is shown is whole device pixels and within it; native and multiples keep each pixel whole", () => {
+  for (const rule of ["native", "integer", "fill"] as const) {
+    for (const dpr of [1, 1.1, 1.25, 2, 2.625, 3]) {
+      for (let w = 200; w < 2600; w += 97) {
+        for (const h of [180, 333, 700, 1300]) {
+          const { pixels, scale, width, height, gap, arrangement } = fit(w, h, dpr, two(rule));
+          const text = `${rule} ${w}×${h} at ${dpr}: ${JSON.stringify({ pixels, scale, width, height, gap, arrangement })}`;
+          const total = arrangement === "side" ? [2 * width + gap, height] : [width, 2 * height + gap];
+          assert.ok((total[0] ?? 0) <= w + 1e-6 && (total[1] ?? 0) <= h + 1e-6, text);
+          for (const side of [width, height]) assert.ok(Math.abs(side * dpr - Math.round(side * dpr)) < 1e-6, text);
+          if (rule !== "fill" && scale >= 1) assert.ok(Number.isInteger(scale) && (rule === "integer" || scale === 1), text);
+          if (rule !== "fill" && scale < 1) assert.deepEqual(pixels, [592, 333], text);
+        }
+      }
+    }
+  }
 });
 
 test("the grey is the study's linear luminance, encoded by sRGB", () => {

@@ -45,7 +45,7 @@ function stimuliOf({ trials }: Material): Schemas["Stimulus"][] {
   return trials.flatMap(({ block_index, item_index, shown }, i) => {
     const block = blocks[block_index] ?? "";
     const one = (role: string, condition: string, technique: string) => ({
-      ...{ item: `${block}-${item_index + 1}`, condition, sha256: shown[role]?.sha256 ?? "", pixels_sha256: hash("b17"), provenance: provenance(technique, i) },
+      ...{ item: `${block}-${item_index + 1}`, condition, size: [...study.size], sha256: shown[role]?.sha256 ?? "", pixels_sha256: hash("b17"), provenance: provenance(technique, i) },
     });
     return [one("left", "pa", "pa"), one("right", block === "photographs" ? "simulated-photo" : "mc", "mc")];
   });
@@ -112,14 +112,14 @@ export const results =
     const blocks = taken ? judged : unjudged;
     const common = { study: id, title: found.title, ...choice, standing: standing(taken), stimuli: taken ? stimuliOf(stuff) : [] };
     if (what === "results") {
-      const reply: Schemas["StudyResults"] = { ...common, excluded: [], blocks };
+      const reply: Schemas["StudyResults"] = { ...common, display: "Pictures are made at 592 × 333 pixels.", excluded: [], blocks };
       return [200, reply];
     }
     if (what === "report") {
       const methods = ["Participants saw 5 pairs of stimuli in 3 blocks and had to choose one of each pair.", "Effect sizes are Cohen's d and Hedges' g with 95% intervals from the noncentral t distribution."];
       const reply: Schemas["StudyReport"] = {
         ...common,
-        ...{ blocks, methods, references: [], screening, design, question: study.question, kelir_version: "0.1.0" },
+        ...{ shown: [], blocks, methods, references: [], screening, design, question: study.question, kelir_version: "0.1.0" },
         excluded: taken ? excluded : [],
         blocks_with_excluded: taken ? judged : null,
         ...(taken ? { scale, scale_note: null } : { scale: null, scale_note: "No scale: no choices." }),

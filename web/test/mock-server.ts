@@ -53,6 +53,8 @@ export interface Options {
   spoil?: string;
   /** When an answer counts. */
   response?: Study["response"];
+  /** In which sizes pictures are shown. */
+  shownAs?: Study["display"];
   /** Each visit is somebody else's. */
   perVisit?: boolean;
   /** What a link makes of a visit that asks to be another than a participant's. */
@@ -66,14 +68,14 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, perVisit = false, spoil = "", texts = {}, visitKind = "participant" }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, shownAs = study.display, perVisit = false, spoil = "", texts = {}, visitKind = "participant" }: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
 
   const worded = <T extends Pick<Study, "texts">>(told: T): T => ({ ...told, texts: { ...told.texts, ...texts } });
   const translations = Object.fromEntries(Object.entries(study.translations).map(([language, told]) => [language, worded(told)]));
-  const found = (): Study => ({ ...worded(study), translations, response, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
+  const found = (): Study => ({ ...worded(study), translations, response, display: shownAs, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
     return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));

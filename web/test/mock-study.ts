@@ -8,6 +8,7 @@ export const study: Omit<Study, "trial_kinds"> = {
   question: "Which image is more likely to be real?",
   surround: 0.2,
   size: [592, 333],
+  display: { sizes: [[592, 333]], fit: "native" },
   response: { min_visible_ms: 0, min_gap_ms: 0 },
   per_visit: false,
   estimated_minutes: 3,
@@ -64,19 +65,22 @@ export interface Material {
   trials: Planned[];
 }
 
-const [width, height] = [592, 333];
+/** The size of the mock's pictures, and the further one of those that have two. */
+type Size = readonly [number, number];
+const SMALL: Size = [592, 333];
+export const LARGE: Size = [1110, 624];
 
 /** Drawing takes longer than all else here, so each look is drawn once. */
 const drawn = new Map<string, Uint8Array>();
-function rows(look: Look): Uint8Array {
-  const key = JSON.stringify(look);
+function rows(look: Look, [width, height]: Size): Uint8Array {
+  const key = JSON.stringify([look, width, height]);
   const rgb = drawn.get(key) ?? shadowRows({ width, height, ...look });
   drawn.set(key, rgb);
   return rgb;
 }
 
 /** From one frame to the next: what is brighter above what is darker. */
-function step(before: Uint8Array, after: Uint8Array): Buffer {
+function step(before: Uint8Array, after: Uint8Array, [width, height]: Size): Buffer {
   const less = (a: Uint8Array, b: Uint8Array) => a.map((value, i) => Math.max(0, value - (b[i] ?? 0)));
   return png(width, 2 * height, Buffer.concat([less(after, before), less(before, after)]));
 }
@@ -85,26 +89,27 @@ export class Maker implements Material {
   readonly bytes: Material["bytes"] = new Map();
   readonly trials: Planned[] = [];
 
-  still(look: Look) {
-    return this.#add([png(width, height, rows(look))], 0, false);
+  still(look: Look, size = SMALL) {
+    return this.#add([png(...size, rows(look, size))], 0, false, size);
   }
 
   /** Frames of RGB rows, packed as the server does it. */
-  animation(frames: Uint8Array[], fps: number, loop = true) {
+  animation(frames: Uint8Array[], fps: number, loop = true, size = SMALL) {
     const [first = new Uint8Array(), ...others] = frames;
-    return this.#add([png(width, height, first), ...others.map((frame, i) => step(frames[i] as Uint8Array, frame))], fps, loop);
+    return this.#add([png(...size, first), ...others.map((frame, i) => step(frames[i] as Uint8Array, frame, size))], fps, loop, size);
   }
 
-  swinging(look: Look, frames: number, fps: number) {
-    return this.animation(Array.from({ length: frames }, (_, i) => rows({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) })), fps);
+  swinging(look: Look, frames: number, fps: number, size = SMALL) {
+    return this.animation(Array.from({ length: frames }, (_, i) => rows({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) }, size)), fps, true, size);
   }
 
-  trial(trial: Omit<Planned, "trial_index" | "width" | "height">): void {
-    this.trials.push({ trial_index: this.trials.length, ...trial, width, height });
+  trial(trial: Omit<Planned, "trial_index" | "width" | "height" | "larger"> & Partial<Pick<Planned, "larger">>): void {
+    const [width, height] = SMALL;
+    this.trials.push({ trial_index: this.trials.length, larger: [], ...trial, width, height });
   }
 
   /** As the server packs stimuli, but for the pictures' type. */
-  #add(pictures: Buffer[], fps: number, loop: boolean) {
+  #add(pictures: Buffer[], fps: number, loop: boolean, [width, height]: Size) {
     const head = { format: 2, width, height, fps, loop, frames: [...pictures.keys()], picture_type: "image/png", picture_bytes: pictures.map((png) => png.length) };
     const data = Buffer.concat([Buffer.from(`${JSON.stringify(head)}\n`), ...pictures, Buffer.alloc(100)]);
     const hash = sha256(data);
@@ -125,6 +130,22 @@ export function material({ frames = 12, fps = 12 } = {}): Maker {
   pair(2, 0, "animation", made.swinging({ soft: 8 }, frames, fps), made.swinging({ soft: 8, noise: 0.1 }, frames, fps));
   return made;
 }
+
+/** A pair of stills and one of animations in two sizes each, and what the study says of them. */
+export function inTwoSizes(): Material {
+  const made = new Maker();
+  const [width, height] = LARGE;
+  const trial = (kind: Planned["kind"], picture: (look: Look, size?: Size) => ReturnType<Maker["still"]>) => {
+    const pair = (size?: Size) => ({ left: picture({ turn: 0.1 }, size), right: picture({ turn: 0.1, noise: 0.1 }, size) });
+    made.trial({ trial: "two-alternative", block_index: 0, item_index: 0, kind, shown: pair(), larger: [{ width, height, shown: pair(LARGE) }], settings: null });
+  };
+  trial("still", (look, size) => made.still(look, size));
+  trial("animation", (look, size) => made.swinging(look, 3, 6, size));
+  return made;
+}
+
+/** What a study in two sizes says of them. */
+export const twoSizes = (fit: Study["display"]["fit"]): Study["display"] => ({ sizes: [[...SMALL], [...LARGE]], fit });
 
 /** Durations of the mock's two-interval trials, ms. */
 export const durations = { fixation_ms: 200, first_ms: 300, mask_ms: 100, second_ms: 250 };

@@ -5,7 +5,7 @@ import { position, remaining, withAnswered } from "../participant/plan.ts";
 
 const ref = { sha256: "0", url: "/stimuli/0" };
 const trial = (trial_index: number, answered = false): Trial => ({
-  ...{ trial_index, answered, trial: "two-alternative", block_index: 0, item_index: 0, kind: "still", shown: { left: ref, right: ref }, settings: null, width: 592, height: 333 },
+  ...{ trial_index, answered, trial: "two-alternative", block_index: 0, item_index: 0, kind: "still", shown: { left: ref, right: ref }, larger: [], settings: null, width: 592, height: 333 },
 });
 const indices = (trials: Trial[]) => trials.map((t) => t.trial_index);
 

@@ -184,8 +184,7 @@ pub(crate) fn judged(report: &StudyReport) -> Vec<Judged<'_>> {
         for pair in &block.by_item {
             let Some(target) = &pair.target else { continue };
             for stimulus in report
-                .stimuli
-                .iter()
+                .smallest()
                 .filter(|s| s.item == pair.id && block.summary.conditions.contains(&s.condition))
             {
                 let Some(error) = stimulus.error() else { continue };

@@ -5,6 +5,7 @@
 
 mod blocks;
 mod csv;
+mod display;
 mod document;
 mod figures;
 mod format;
@@ -18,6 +19,7 @@ mod standing;
 mod text;
 
 pub use csv::{csv, csv_cell};
+pub use display::ShownAt;
 pub use document::{Cell, Column, Document, Figure, Piece, Row, Section, Table};
 pub use html::{escaped, html};
 pub use markdown::{Figures, Markdown, markdown};
@@ -69,6 +71,8 @@ pub struct StudyReport {
     pub scale_with_excluded: Option<ScaleIntervals>,
     /// What was shown, with how it was made and its measured error.
     pub stimuli: Vec<Stimulus>,
+    /// In which sizes it was shown, by rising size.
+    pub shown: Vec<ShownAt>,
     /// Other versions of the study that have sessions; their answers are not in here.
     pub other_versions: Vec<PooledVersion>,
     /// Whether the stored answers are what was written: the study's own chain and, before it, the one that all studies used to share.
@@ -119,6 +123,8 @@ pub struct Stimulus {
     pub item: String,
     /// Condition's name.
     pub condition: String,
+    /// [width, height] in pixels; [0, 0] where that was never known.
+    pub size: [u32; 2],
     /// Hash of the stimulus's file.
     pub sha256: String,
     /// Hash of its decoded pixels.
@@ -192,6 +198,14 @@ impl Fault {
 }
 
 impl StudyReport {
+    /// The stimuli at the study's smallest size: what is drawn at several is told once.
+    pub(crate) fn smallest(&self) -> impl Iterator<Item = &Stimulus> {
+        let is_larger = |one: &Stimulus, other: &Stimulus| {
+            (&one.item, &one.condition) == (&other.item, &other.condition) && one.size > other.size
+        };
+        self.stimuli.iter().filter(move |one| !self.stimuli.iter().any(|other| is_larger(one, other)))
+    }
+
     /// Whether nobody whose answers are judged has answered anything that is analysed.
     pub fn is_empty(&self) -> bool {
         self.report.blocks.iter().all(|block| block.first.is_none())

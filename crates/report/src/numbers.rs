@@ -1,6 +1,7 @@
 //! Every number of a report, one at a time: what the tables show and the CSV holds.
 
 use crate::StudyReport;
+use crate::display;
 use crate::format::count;
 use kelir_stats::clustered::{Bootstrap, Coefficient};
 use kelir_stats::inference::{Bounds, Interval};
@@ -89,7 +90,11 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
     }
     for stimulus in &report.stimuli {
         let rows = Rows::of(Sample::Screened, "", "stimulus error");
-        let of = format!("of {}, {} (share of full scale)", stimulus.item, stimulus.condition);
+        let at = match report.design.sizes() {
+            [_] => String::new(),
+            _ => format!(" at {}", display::size(stimulus.size)),
+        };
+        let of = format!("of {}, {}{at} (share of full scale)", stimulus.item, stimulus.condition);
         if let Some(error) = stimulus.error() {
             let what = if error.own { "own standard error" } else { "RMSE in penumbra" };
             all.push(rows.number(format!("{what} {of}"), error.rms, 6));

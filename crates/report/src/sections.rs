@@ -4,7 +4,7 @@ use crate::blocks::{self, table};
 use crate::document::{Cell, Piece, Row, Section, Table};
 use crate::format::{MISSING, count, fixed, p_value, percent, range, share, significant};
 use crate::numbers::{Sample, of_scale};
-use crate::{StudyReport, figures, headline, sources};
+use crate::{StudyReport, display, figures, headline, sources};
 use kelir_study::visits::Repeated;
 use kelir_study::{Condition, Kind, StudyDefinition};
 use std::collections::BTreeSet;
@@ -157,15 +157,16 @@ fn design(report: &StudyReport) -> Section {
         Row::Cells(vec![Cell::text(name), Cell::text(made)])
     });
     let conditions = Table::new("", &["condition", "made by"], rows.collect());
-    let [width, height] = study.size;
     let text = format!(
-        "“{}”, asked of {} in {}, two pictures {}, {width} × {height} pixels each; one of the two had to be chosen.",
+        "“{}”, asked of {} in {}, two pictures {}; one of the two had to be chosen.",
         study.question,
         count(study.most_trials() as u64, "trial"),
         count(study.blocks.len() as u64, "block"),
         shown(study)
     );
-    Section::new("Design", vec![Piece::Text(text), Piece::Table(blocks), Piece::Table(conditions)])
+    let mut pieces = vec![Piece::Text(text), Piece::Table(blocks), Piece::Table(conditions)];
+    pieces.extend(display::pieces(report));
+    Section::new("Design", pieces)
 }
 
 /// How the two pictures of a trial are shown.

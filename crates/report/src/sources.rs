@@ -1,6 +1,7 @@
 //! The last sections of a report: how its numbers were got, what they are of, and how to cite it all.
 
 use crate::StudyReport;
+use crate::display;
 use crate::document::{Cell, Piece, Row, Section, Table};
 use crate::format::significant;
 
@@ -43,11 +44,12 @@ pub(crate) fn data(report: &StudyReport) -> Section {
             Row::Cells(vec![
                 Cell::text(&stimulus.item),
                 Cell::text(&stimulus.condition),
+                Cell::text(display::size(stimulus.size)),
                 Cell::maybe(stimulus.error().map(|e| e.rms), |e| significant(e, 3)),
                 Cell::text(&stimulus.sha256),
             ])
         });
-        let columns = ["pair", "condition", "RMS error#", "SHA-256"];
+        let columns = ["pair", "condition", "size, px", "RMS error#", "SHA-256"];
         pieces.push(Piece::Table(Table::new(
             "Stimuli, by the hash of their files.",
             &columns,

@@ -10,24 +10,24 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// Reads and checks any study file with all that it names, as serving does, and tries each picture in a small size. Files are looked for below
-/// the parent of the study's folder when that is called `studies`, else below the folder itself, and then among the built-in ones.
+/// The library of any study file and its path there, for [`Library::rehearsed`]. What it names is looked for below the parent of its folder when that
+/// is called `studies`, else below the folder itself, and then among the built-in files.
 ///
 /// # Errors
-/// It cannot be read, or everything that is wrong with it.
-pub fn check_study(file: &Path) -> Result<StudyDefinition, StudyFileError> {
+/// There is no such file.
+pub fn library_of(file: &Path) -> Result<(Library, String), StudyFileError> {
     let unreadable = |source| StudyFileError::Unreadable { path: file.to_owned(), source };
     let whole = file.canonicalize().map_err(unreadable)?;
     let parts = (whole.parent(), whole.file_name().and_then(|name| name.to_str()));
     let (Some(folder), Some(name)) = parts else {
         return Err(unreadable(io::Error::new(ErrorKind::InvalidInput, "is no file with a readable name")));
     };
-    match folder.parent() {
+    Ok(match folder.parent() {
         Some(root) if folder.file_name().is_some_and(|name| name == "studies") => {
-            Library::new(root).rehearsed(&format!("studies/{name}"))
+            (Library::new(root), format!("studies/{name}"))
         }
-        _ => Library::new(folder).rehearsed(name),
-    }
+        _ => (Library::new(folder), name.to_owned()),
+    })
 }
 
 /// Problems as they are found, each said once.
@@ -56,19 +56,25 @@ pub(crate) fn problems_around(library: &Library, file: &str, study: &StudyDefini
                 if let Err(rule) = render::technique(technique, knobs) {
                     found.add(field.clone(), None, rule);
                 }
-                if let Some(Err(rule)) = camera.as_ref().map(render::camera) {
+                // What is right at the smallest size and at the largest is right between.
+                let wrong =
+                    |settings| widths(study).into_iter().find_map(|m| render::camera(settings, m).err());
+                if let Some(rule) = camera.as_ref().and_then(wrong) {
                     found.add(format!("{field}.camera"), None, rule);
                 }
             }
             Condition::Files { files } => {
-                for (item, path) in files {
-                    let rules = match library.read(&beside(file, path)) {
-                        Ok(bytes) => picture::broken(path, &bytes, study.size),
-                        Err(error) => vec![error.to_string()],
-                    };
-                    rules
-                        .into_iter()
-                        .for_each(|rule| found.add(format!("{field}.files.{item}"), Some(path), rule));
+                for (item, pictures) in files {
+                    for (rank, (path, size)) in pictures.paths().iter().zip(study.sizes()).enumerate() {
+                        let rules = match library.read(&beside(file, path)) {
+                            Ok(bytes) => picture::broken(path, &bytes, *size),
+                            Err(error) => vec![error.to_string()],
+                        };
+                        let place =
+                            if pictures.paths().len() > 1 { format!("[{rank}]") } else { String::new() };
+                        let field = format!("{field}.files.{item}{place}");
+                        rules.into_iter().for_each(|rule| found.add(field.clone(), Some(path), rule));
+                    }
                 }
             }
         }
@@ -114,12 +120,13 @@ pub(crate) fn problems_drawing(library: &Library, file: &str, study: &StudyDefin
             (scene, drawn) = render::rehearse(&task, scene);
             match drawn {
                 Ok(()) => {}
-                // The size is the study's: told once for all scenes of one screen.
+                // Sizes are the study's: told once for all scenes of one screen.
                 Err(RenderError::View(rule)) => {
                     let parts = rule.strip_prefix("size = ").and_then(|rule| rule.split_once(": "));
                     let (value, rule) =
                         parts.map_or((None, rule.as_str()), |(value, rule)| (Some(value), rule));
-                    found.add("size".to_owned(), value, rule);
+                    let field = if study.sizes().len() > 1 { "display.sizes" } else { "size" };
+                    found.add(field.to_owned(), value, rule);
                 }
                 Err(error) => {
                     let field = fields.get(task.pair.id.as_str()).cloned().unwrap_or_default();
@@ -133,6 +140,13 @@ pub(crate) fn problems_drawing(library: &Library, file: &str, study: &StudyDefin
         }
     }
     found.problems
+}
+
+/// How many times as wide as the smallest size the smallest and the largest are.
+fn widths(study: &StudyDefinition) -> [f64; 2] {
+    let [smallest, largest] =
+        [study.sizes().first(), study.sizes().last()].map(|size| size.map_or(1, |size| size[0].max(1)));
+    [1.0, f64::from(largest) / f64::from(smallest)]
 }
 
 /// Every item with its block and the path of its field.

@@ -58,6 +58,7 @@ pub async fn responses_table(store: &Store, selection: &Selection) -> Result<Tab
         };
         sessions.insert(session.session_id, Taken { columns, trials });
     }
+    let sizes = sizes(store, selection).await?;
     let table = Rows::default();
     let mut cells = Vec::with_capacity(rows.len());
     for row in &rows {
@@ -69,6 +70,8 @@ pub async fn responses_table(store: &Store, selection: &Selection) -> Result<Tab
             session: &taken.columns,
             trial: &planned.trial,
             sha256: row.shown.iter().map(|(role, shown)| (*role, shown.sha256.as_str())).collect(),
+            size:
+                row.shown.values().find_map(|shown| sizes.get(&shown.sha256).copied()).unwrap_or(study.size),
             answer: row.answer.as_deref().filter(|_| row.payload.is_some()),
             payload: &payload.unwrap_or(Value::Null),
             payload_hash: row.payload.as_ref().map(|payload| sha256_hex(payload.as_bytes())),
@@ -78,6 +81,16 @@ pub async fn responses_table(store: &Store, selection: &Selection) -> Result<Tab
         }));
     }
     Ok(Table { name: "responses", columns: codebook(), rows: cells })
+}
+
+/// The size of each stimulus of the chosen versions, by its hash; those that were never known are left out.
+async fn sizes(store: &Store, selection: &Selection) -> Result<HashMap<String, [u32; 2]>, StoreError> {
+    let mut sizes = HashMap::new();
+    for version in &selection.versions {
+        let stimuli = store.version_stimuli(&selection.study.id, version).await?;
+        sizes.extend(stimuli.into_iter().filter(|s| s.size != [0, 0]).map(|s| (s.sha256, s.size)));
+    }
+    Ok(sizes)
 }
 
 /// Every table of the chosen versions as one spreadsheet.

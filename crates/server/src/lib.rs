@@ -38,9 +38,10 @@ mod starting;
 mod table;
 mod viewer;
 mod web;
+mod weight;
 mod workbook;
 
-pub use check::check_study;
+pub use check::library_of;
 pub use error::{StartError, StudyFileError};
 pub use events::events_table;
 pub use export::{codebook_csv, responses_csv, responses_table, spreadsheet};
@@ -54,6 +55,7 @@ pub use routes::openapi_json;
 pub use selection::{Include, Selection, SelectionError, VersionRef, With};
 pub use server::{Handle, Server, ServerConfig};
 pub use table::{Table, codebook_of};
+pub use weight::{HEAVY_BYTES, Weight};
 pub use workbook::workbook;
 
 /// Re-exported for callers that read a data folder without a server.

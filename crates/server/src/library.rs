@@ -3,6 +3,7 @@
 use crate::check;
 use crate::error::StudyFileError;
 use crate::remembered::{Known, Remembered, SceneFacts};
+use crate::weight::{self, Weight};
 use kelir_scene::{Assets, Scene};
 use kelir_store::sha256_hex;
 use kelir_study::{Problem, StudyDefinition, StudyErrors};
@@ -100,6 +101,14 @@ impl Library {
     /// It cannot be read, or everything that is wrong with it.
     pub fn rehearsed(&self, path: &str) -> Result<StudyDefinition, StudyFileError> {
         self.checked(path, true)
+    }
+
+    /// What a participant downloads of each block of a study that is good, at each of its sizes.
+    ///
+    /// # Errors
+    /// Why something cannot be drawn or packed.
+    pub fn weights(&self, path: &str, study: &StudyDefinition) -> Result<Vec<Weight>, String> {
+        weight::weights(self, path, study)
     }
 
     fn checked(&self, path: &str, thorough: bool) -> Result<StudyDefinition, StudyFileError> {

@@ -3,12 +3,12 @@
 use crate::library::{Library, beside};
 use crate::picture;
 use kelir_store::{ANIMATION, Render, StimulusInfo, Store, StoreError, StudyStimulus, sha256_hex};
-use kelir_study::{Block, Condition, Item, StudyDefinition};
+use kelir_study::{Block, Condition, Item, Pictures, StudyDefinition};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// One stimulus to make: a pair of a study under one of its conditions.
+/// One stimulus to make: a pair of a study under one of its conditions at one of its sizes.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
     /// The study.
@@ -21,9 +21,27 @@ pub struct Task<'a> {
     pub name: &'a str,
     /// The condition.
     pub condition: &'a Condition,
+    /// Place of its size among the study's.
+    pub rank: usize,
+    /// The size [width, height] in pixels.
+    pub size: [u32; 2],
 }
 
 impl Task<'_> {
+    /// How many times as wide it is as the study's smallest size.
+    pub fn magnification(&self) -> f64 {
+        f64::from(self.size[0]) / f64::from(self.study.size[0])
+    }
+
+    /// Pair and condition in words, and the size where the study has several.
+    fn in_words(&self) -> String {
+        let [width, height] = self.size;
+        match self.study.sizes() {
+            [_] => format!("{} ({})", self.pair.id, self.name),
+            _ => format!("{} ({}, {width} × {height})", self.pair.id, self.name),
+        }
+    }
+
     /// The study's file in the library.
     pub fn study_file(&self) -> String {
         format!("studies/{}.toml", self.study.id)
@@ -73,7 +91,7 @@ pub trait Maker: Send + Sync + 'static {
 pub struct Making {
     /// Study's id.
     pub study: String,
-    /// Which stimulus is being made, `pair (condition)`; empty at the end.
+    /// Which stimulus is being made, `pair (condition)` and its size where there are several; empty at the end.
     pub stimulus: String,
     /// What is being done to it.
     pub step: String,
@@ -85,40 +103,55 @@ pub struct Making {
     pub fraction: f64,
 }
 
-/// A study's stimuli, by item and condition.
+/// A study's stimuli, by item and condition, each by rising size.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct StimulusMap(BTreeMap<(String, String), StudyStimulus>);
+pub(crate) struct StimulusMap(BTreeMap<(String, String), Vec<StudyStimulus>>);
 
 impl StimulusMap {
-    /// What an item shows under a condition.
+    /// What an item shows under a condition, by rising size; never nothing.
     ///
     /// # Errors
     /// [`MakingError::Missing`] names what is not there.
-    pub(crate) fn get(&self, item: &str, condition: &str) -> Result<&StudyStimulus, MakingError> {
+    pub(crate) fn of(&self, item: &str, condition: &str) -> Result<&[StudyStimulus], MakingError> {
         let missing = || MakingError::Missing { item: item.to_owned(), condition: condition.to_owned() };
-        self.0.get(&(item.to_owned(), condition.to_owned())).ok_or_else(missing)
+        self.0.get(&(item.to_owned(), condition.to_owned())).map(Vec::as_slice).ok_or_else(missing)
     }
 
-    /// Everything that is shown, by item and condition.
+    /// What an item shows under a condition at the size of this place, from 0.
+    ///
+    /// # Errors
+    /// [`MakingError::Missing`] names what is not there.
+    pub(crate) fn at(&self, item: &str, condition: &str, rank: usize) -> Result<&StudyStimulus, MakingError> {
+        let missing = || MakingError::Missing { item: item.to_owned(), condition: condition.to_owned() };
+        self.of(item, condition)?.get(rank).ok_or_else(missing)
+    }
+
+    /// Everything that is shown, by item, condition and size.
     pub(crate) fn all(&self) -> Vec<StudyStimulus> {
-        self.0.values().cloned().collect()
+        self.0.values().flatten().cloned().collect()
     }
 }
 
 impl FromIterator<StudyStimulus> for StimulusMap {
     fn from_iter<T: IntoIterator<Item = StudyStimulus>>(stimuli: T) -> StimulusMap {
-        StimulusMap(stimuli.into_iter().map(|s| ((s.item.clone(), s.condition.clone()), s)).collect())
+        let mut map = BTreeMap::<(String, String), Vec<StudyStimulus>>::new();
+        for stimulus in stimuli {
+            map.entry((stimulus.item.clone(), stimulus.condition.clone())).or_default().push(stimulus);
+        }
+        map.values_mut().for_each(|sizes| sizes.sort_by_key(|stimulus| stimulus.size));
+        StimulusMap(map)
     }
 }
 
-/// Every stimulus of a study, in the order of its file.
+/// Every stimulus of a study, in the order of its file, each by rising size.
 pub(crate) fn tasks(study: &StudyDefinition) -> Vec<Task<'_>> {
     let mut tasks = Vec::new();
     for block in &study.blocks {
         for pair in &block.items {
             for name in &block.conditions {
-                if let Some(condition) = study.conditions.get(name) {
-                    tasks.push(Task { study, block, pair, name, condition });
+                let Some(condition) = study.conditions.get(name) else { continue };
+                for (rank, size) in study.sizes().iter().copied().enumerate() {
+                    tasks.push(Task { study, block, pair, name, condition, rank, size });
                 }
             }
         }
@@ -149,7 +182,7 @@ pub(crate) async fn make(
     let tasks = tasks(study);
     let mut made = Vec::new();
     for (done, task) in tasks.iter().enumerate() {
-        let stimulus = format!("{} ({})", task.pair.id, task.name);
+        let stimulus = task.in_words();
         let event = |fraction, step: &str| Making {
             study: study.id.clone(),
             stimulus: stimulus.clone(),
@@ -264,7 +297,7 @@ fn draw(
         Condition::Rendered { .. } => maker.make(task, library, progress),
         Condition::Files { .. } => {
             let (path, bytes) = picture_file(task, library)?;
-            if let Some(rule) = picture::broken(&path, &bytes, task.study.size).first() {
+            if let Some(rule) = picture::broken(&path, &bytes, task.size).first() {
                 return Err(format!("{path}: {rule}"));
             }
             let (media_type, _) =
@@ -277,7 +310,8 @@ fn draw(
 
 fn picture_file(task: &Task<'_>, library: &Library) -> Result<(String, Vec<u8>), String> {
     let Condition::Files { files } = task.condition else { return Err("is not a picture file".to_owned()) };
-    let path = files.get(&task.pair.id).ok_or("has no picture file")?;
+    let paths = files.get(&task.pair.id).map(Pictures::paths).unwrap_or_default();
+    let path = paths.get(task.rank).ok_or("has no picture file")?;
     let path = beside(&task.study_file(), path);
     let bytes = library.read(&path).map_err(|error| format!("{path}: {error}"))?;
     Ok((path, bytes))

@@ -1,16 +1,17 @@
 //! What a session's page is told and given of its stimuli: addresses and bytes of its own, that do not say which condition is which.
 //!
-//! Each stimulus goes out packed, filled up to the length of the longest of its trial, with a last few bytes that are the session's: so its
+//! Each stimulus goes out packed, filled up to the length of the longest of its trial at its size, with a last few bytes that are the session's: so its
 //! hash is the session's too. Its address is a capability: who knows it may have it, and it is made from the session's secret.
 
 use crate::api::{Problem, StimulusRef};
 use crate::content::ByteCache;
 use axum::body::Bytes;
 use hmac::{Hmac, KeyInit, Mac};
-use kelir_store::{Packing, PlannedTrial, Session, Store, sha256_hex};
+use kelir_store::{Packing, PlannedTrial, Session, StimulusHashes, Store, sha256_hex};
 use kelir_study::trials::Role;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashMap};
+use std::iter;
 use std::sync::{Mutex, PoisonError, RwLock};
 
 /// Most bytes of stimuli that are held in memory.
@@ -64,20 +65,33 @@ impl Default for Presenter {
 }
 
 impl Presenter {
-    /// What a page is told of a trial's stimuli.
+    /// What a page is told of a trial's stimuli, at each size of the study.
     pub(crate) async fn tell(
         &self,
         store: &Store,
         whose: Whose<'_>,
         trial: &PlannedTrial,
+    ) -> Result<Vec<BTreeMap<Role, StimulusRef>>, Box<Problem>> {
+        let mut told = Vec::with_capacity(1 + trial.larger.len());
+        for stimuli in iter::once(&trial.stimuli).chain(trial.larger.iter().map(|larger| &larger.stimuli)) {
+            told.push(self.tell_of_size(store, whose, stimuli).await?);
+        }
+        Ok(told)
+    }
+
+    async fn tell_of_size(
+        &self,
+        store: &Store,
+        whose: Whose<'_>,
+        stimuli: &BTreeMap<Role, StimulusHashes>,
     ) -> Result<BTreeMap<Role, StimulusRef>, Box<Problem>> {
         let mut longest = 0;
-        for hashes in trial.stimuli.values() {
+        for hashes in stimuli.values() {
             longest = longest.max(self.packing(store, &hashes.sha256).await?.size_bytes);
         }
         let length = longest + TAIL as u64;
         let mut told = BTreeMap::new();
-        for (role, hashes) in &trial.stimuli {
+        for (role, hashes) in stimuli {
             let stimulus = hashes.sha256.clone();
             let mut hash = self.begun(store, &stimulus, length).await?;
             let tail = secret(whose, "tail", &stimulus, length)?;

@@ -3,7 +3,8 @@
 use crate::library::Library;
 use crate::making::{Made, Maker, Task};
 use kelir_render::camera::Camera;
-use kelir_render::job::{Job, Output, run};
+use kelir_render::job::{Drawing, Job, Output, run};
+use kelir_render::pa::check_view;
 use kelir_render::{Backend, Pixel, RenderError, Technique, View};
 use kelir_scene::Scene;
 use kelir_study::{Condition, Kind, Problem};
@@ -25,9 +26,12 @@ pub(crate) fn technique(name: &str, knobs: &BTreeMap<String, Value>) -> Result<T
     Ok(technique)
 }
 
-/// The camera with these settings; what is wrong with them.
-pub(crate) fn camera(settings: &BTreeMap<String, Value>) -> Result<Camera, String> {
-    let camera: Camera = serde_json::from_value(json!(settings)).map_err(|error| error.to_string())?;
+/// The camera with these settings, which are those of the study's smallest size; what is wrong with them. In a picture `magnification` times as
+/// wide the blur is as much wider and a pixel, which gathers less light, as much noisier: it is the same photograph by a finer sensor.
+pub(crate) fn camera(settings: &BTreeMap<String, Value>, magnification: f64) -> Result<Camera, String> {
+    let mut camera: Camera = serde_json::from_value(json!(settings)).map_err(|error| error.to_string())?;
+    camera.defocus_px *= magnification;
+    camera.noise *= magnification;
     camera.check().map_err(|error| error.to_string())?;
     Ok(camera)
 }
@@ -66,13 +70,46 @@ impl Maker for RenderMaker {
     }
 }
 
-/// Tries a task in a small size, by the path that makes it; the scene comes back for the next.
+/// Tries a task in a small size, by the path that makes it; the scene comes back for the next. Of a study's further sizes the view alone is
+/// tried: what is drawn is small at each.
 pub(crate) fn rehearse(task: &Task<'_>, scene: Scene) -> (Scene, Result<(), RenderError>) {
     match job(task) {
+        Ok(job) if task.rank > 0 => {
+            let possible = check_view(&scene.still(), &job.view);
+            (scene, possible)
+        }
         Ok(job) => kelir_render::job::rehearse(job.with_scene(scene)),
         // What is wrong with the condition or its scene's name has been told already.
         Err(_) => (scene, Ok(())),
     }
+}
+
+/// How many pictures there are in all, and the files of one or two of them.
+type Sample = (usize, Vec<Vec<u8>>);
+
+/// How many pictures a task has, and one of them as it will be made; of a film two that follow each other, from its middle. The scene comes back
+/// for the next.
+pub(crate) fn sample(task: &Task<'_>, scene: Scene) -> (Scene, Result<Sample, String>) {
+    let mut job = match job(task) {
+        Ok(job) => job.with_scene(scene),
+        Err(rule) => return (scene, Err(rule)),
+    };
+    let frames = match (job.output, job.scene.timeline()) {
+        (Output::Animation, Some(timeline)) => timeline.frame_count(),
+        _ => 1,
+    };
+    let drawn = two(&mut job, frames / 2, frames.min(2)).map_err(|error| error.to_string());
+    (job.scene, drawn.map(|pictures| (frames, pictures)))
+}
+
+fn two(job: &mut Job, last: usize, count: usize) -> Result<Vec<Vec<u8>>, RenderError> {
+    let mut drawing = Drawing::open(job)?;
+    let mut pictures = Vec::with_capacity(count);
+    for index in (last + 1 - count)..=last {
+        drawing.frame(index)?;
+        pictures.push(drawing.file()?.bytes);
+    }
+    Ok(pictures)
 }
 
 /// What a task asks the renderer for; its scene as a path in the library, not read.
@@ -81,7 +118,7 @@ fn job(task: &Task<'_>) -> Result<Job<String>, String> {
         return Err("is a picture file and is not drawn".to_owned());
     };
     let technique = technique(name, knobs)?;
-    let [width, height] = task.study.size;
+    let [width, height] = task.size;
     let output = match task.block.kind {
         Kind::Still => Output::Still,
         Kind::Animation => Output::Animation,
@@ -92,14 +129,14 @@ fn job(task: &Task<'_>) -> Result<Job<String>, String> {
         technique,
         view: View { size: [width as usize, height as usize], pixel: Pixel::Area, skip: true },
         backend: Backend::Cpu,
-        camera: settings.as_ref().map(camera).transpose()?,
+        camera: settings.as_ref().map(|settings| camera(settings, task.magnification())).transpose()?,
         time_s: None,
         exposure: output.exposure(),
         output,
     })
 }
 
-fn lines(problems: Vec<Problem>) -> String {
+pub(crate) fn lines(problems: Vec<Problem>) -> String {
     problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
 

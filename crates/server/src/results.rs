@@ -4,17 +4,17 @@ use crate::api::StudyVersion;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
 use crate::table::write_row;
 use kelir_report::{
-    Chain, DifferentStimulus, Fault, Participants, PooledVersion, Standing, Stimulus, StudyReport,
+    Chain, DifferentStimulus, Fault, Participants, PooledVersion, ShownAt, Standing, Stimulus, StudyReport,
 };
 use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
-use kelir_store::{Store, StoreError, StoredAnswers, StudyStimulus};
+use kelir_store::{ShownSize, Store, StoreError, StoredAnswers, StudyStimulus};
 use kelir_study::analysis::{BlockSummary, conditions_scale, summarise};
 use kelir_study::answers::{Answers, blocks, compares};
 use kelir_study::report::Report;
 use kelir_study::visits::{Judged, LeftOut, SessionKind, Visit};
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -54,6 +54,8 @@ pub struct StudyResults {
     pub scale_note: Option<String>,
     /// What was shown, with how it was made and its measured error.
     pub stimuli: Vec<Stimulus>,
+    /// In which size whom a stimulus is shown, in words.
+    pub display: String,
     /// Other versions of the study that have sessions; their answers are not in these results.
     pub other_versions: Vec<PooledVersion>,
 }
@@ -103,6 +105,7 @@ pub(crate) async fn results_of(
         scale_note,
         excluded,
         stimuli: stimuli.into_iter().map(stimulus).collect(),
+        display: study.display_in_words(),
         other_versions,
     })
 }
@@ -127,8 +130,8 @@ fn standing(selection: &Selection, judged: &Judged<'_>) -> Standing {
 }
 
 fn stimulus(shown: StudyStimulus) -> Stimulus {
-    let StudyStimulus { item, condition, sha256, pixels_sha256, provenance, .. } = shown;
-    Stimulus { item, condition, sha256, pixels_sha256, provenance }
+    let StudyStimulus { item, condition, sha256, pixels_sha256, size, provenance } = shown;
+    Stimulus { item, condition, size, sha256, pixels_sha256, provenance }
 }
 
 /// The full report of the chosen versions from what is stored now. Resampling takes a while with many participants.
@@ -159,6 +162,7 @@ pub(crate) async fn report_of(
     };
     let (pooled, other_versions) = selection.gathered(store).await?;
     let (stimuli, different_stimuli) = selection.shown(store).await?;
+    let shown = shown_at(store, selection, &judged).await?;
     let chain = store.verify_chain(&study.id).await?;
     let times = store.answer_times(&study.id, &selection.versions).await?;
     Ok(StudyReport {
@@ -178,6 +182,7 @@ pub(crate) async fn report_of(
         scale_with_excluded,
         excluded,
         stimuli: stimuli.into_iter().map(stimulus).collect(),
+        shown,
         other_versions,
         chain: Chain {
             rows: chain.rows,
@@ -188,6 +193,29 @@ pub(crate) async fn report_of(
         paper: taylor_cameron().ok().filter(|_| study.id == PAPER_STUDY),
         design: study.clone(),
     })
+}
+
+/// In which sizes those who are judged saw the stimuli.
+async fn shown_at(
+    store: &Store,
+    selection: &Selection,
+    judged: &Judged<'_>,
+) -> Result<Vec<ShownAt>, StoreError> {
+    let of: HashSet<&str> = judged.judged.iter().map(|participant| &*participant.session_id).collect();
+    let mut sizes = BTreeMap::<[u32; 2], ShownAt>::new();
+    for told in store.shown_sizes(&selection.study.id, &selection.versions).await? {
+        if !of.contains(told.session_id.as_str()) {
+            continue;
+        }
+        let ShownSize { size, answers, scale, css_width_px, .. } = told;
+        let shown = ShownAt { size, answers, scale, css_width_px };
+        let all = match sizes.remove(&size) {
+            Some(before) => before.with(shown),
+            None => shown,
+        };
+        sizes.insert(size, all);
+    }
+    Ok(sizes.into_values().collect())
 }
 
 fn fault(kelir_store::Fault { chain, seq, what, note }: kelir_store::Fault) -> Fault {

@@ -4,7 +4,7 @@ use kelir_report::{DifferentStimulus, PooledVersion};
 use kelir_store::{Store, StoreError, StudyStimulus, StudyVersion};
 use kelir_study::StudyDefinition;
 use kelir_study::visits::{SessionKind, Visit};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::time::Duration;
 
 /// A version as somebody names it.
@@ -221,15 +221,14 @@ impl Selection {
         let mut different = BTreeMap::<(String, String), Vec<String>>::new();
         for version in self.versions.iter().skip(1) {
             let of_version = store.version_stimuli(&self.study.id, version).await?;
-            let pixels: HashMap<(&str, &str), &str> = of_version
-                .iter()
-                .map(|s| ((s.item.as_str(), s.condition.as_str()), s.pixels_sha256.as_str()))
-                .collect();
-            for stimulus in &first {
-                let other = pixels.get(&(stimulus.item.as_str(), stimulus.condition.as_str()));
-                if other != Some(&stimulus.pixels_sha256.as_str()) {
-                    let key = (stimulus.item.clone(), stimulus.condition.clone());
-                    different.entry(key).or_default().push(version.clone());
+            let (own, other) = (by_item(&first), by_item(&of_version));
+            for (key, pixels) in own {
+                if other.get(&key) != Some(&pixels) {
+                    let (item, condition) = key;
+                    different
+                        .entry((item.to_owned(), condition.to_owned()))
+                        .or_default()
+                        .push(version.clone());
                 }
             }
         }
@@ -238,6 +237,15 @@ impl Selection {
             different.map(|((item, condition), versions)| DifferentStimulus { item, condition, versions });
         Ok((first, named.collect()))
     }
+}
+
+/// What is shown by item and condition: the pixels at each size.
+fn by_item(stimuli: &[StudyStimulus]) -> HashMap<(&str, &str), BTreeSet<&str>> {
+    let mut pixels = HashMap::<(&str, &str), BTreeSet<&str>>::new();
+    for s in stimuli {
+        pixels.entry((&s.item, &s.condition)).or_default().insert(&s.pixels_sha256);
+    }
+    pixels
 }
 
 #[cfg(test)]

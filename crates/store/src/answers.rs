@@ -8,7 +8,7 @@ use crate::plans::{PlannedTrial, decided, insert_trials, next_trial, trial};
 use crate::sessions::{Session, session};
 use crate::sqlite::Store;
 use crate::writer::Refused;
-use kelir_study::trials::Role;
+use kelir_study::trials::{Checked, Role};
 use rusqlite::{Connection, OptionalExtension, params};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -26,6 +26,8 @@ pub struct NewAnswer {
     pub answer: String,
     /// Everything that the page sent, to the byte.
     pub payload: String,
+    /// The size at which the page says that it showed the stimuli.
+    pub stimulus_size: Option<[u32; 2]>,
 }
 
 /// What a page sent of one trial.
@@ -152,13 +154,14 @@ impl Store {
         new: &NewAnswer,
         next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Appended, E> {
-        let NewAnswer { trial_index, answer, payload } = new.clone();
+        let NewAnswer { trial_index, answer, payload, stimulus_size } = new.clone();
         let sent = SentAnswer { session_id: session.session_id.clone(), trial_index, payload, known: None };
         let admit = |session: Option<Session>| {
             Ok(session.ok_or_else(|| StoreError::corrupt("session", "is not stored"))?)
         };
+        let check = move |_: &kelir_study::Trial| Ok(Checked { answer, stimulus_size });
         let next = |_: &Session, progress| next(progress);
-        Ok(self.take_answer(sent, admit, |_| Ok(answer), next).await?.appended)
+        Ok(self.take_answer(sent, admit, check, next).await?.appended)
     }
 
     /// Takes what a page sent, all in one transaction: `admit` says whose session it is, `check` what the answer to the trial is,
@@ -170,7 +173,7 @@ impl Store {
         &self,
         sent: SentAnswer,
         admit: impl FnOnce(Option<Session>) -> Result<Session, E> + Send + 'static,
-        check: impl FnOnce(&kelir_study::Trial) -> Result<String, E> + Send + 'static,
+        check: impl FnOnce(&kelir_study::Trial) -> Result<Checked, E> + Send + 'static,
         next: impl FnOnce(&Session, Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Taken, E> {
         self.write_or(move |writer| {
@@ -212,7 +215,7 @@ fn take<E>(
     writer: &Connection,
     session: Session,
     sent: SentAnswer,
-    check: impl FnOnce(&kelir_study::Trial) -> Result<String, E>,
+    check: impl FnOnce(&kelir_study::Trial) -> Result<Checked, E>,
     next: impl FnOnce(&Session, Progress) -> Result<NextTrials, E>,
 ) -> Result<Taken, Refused<E>> {
     let SentAnswer { trial_index, payload, known, .. } = sent;
@@ -220,9 +223,9 @@ fn take<E>(
         let (appended, more) = (Appended::NoSuchTrial, session.more);
         return Ok(Taken { session, appended, next_trial: None, more, trials: vec![], answered: vec![] });
     };
-    let answer = check(&planned.trial).map_err(Refused::Caller)?;
-    let (appended, more) =
-        append(writer, &session, &planned, &NewAnswer { trial_index, answer, payload }, next)?;
+    let Checked { answer, stimulus_size } = check(&planned.trial).map_err(Refused::Caller)?;
+    let new = NewAnswer { trial_index, answer, payload, stimulus_size };
+    let (appended, more) = append(writer, &session, &planned, &new, next)?;
     let (mut trials, mut answered) = (Vec::new(), Vec::new());
     if let Some(known) = known {
         trials = decided(writer, &session.session_id, known)?;
@@ -360,7 +363,7 @@ impl Head {
             session.session_id,
             new.trial_index,
             planned.trial.trial.name(),
-            planned.shown()?,
+            planned.shown(new.stimulus_size)?,
             now,
             answer_hash,
             self.row_hash,

@@ -77,6 +77,20 @@ pub(crate) fn pack(
     joined(size, (manifest.fps, manifest.repeat), frames, pictures)
 }
 
+/// How many bytes a picture takes when it is packed, and the step from it to a next one.
+///
+/// # Errors
+/// Why they cannot be packed, as a sentence's end.
+pub fn packed_bytes(picture: &[u8], next: Option<&[u8]>) -> Result<[u64; 2], String> {
+    let (image, profile) = pixels::decode(picture)?;
+    let image = image.into_rgba8();
+    let step = match next {
+        None => 0,
+        Some(next) => webp(&step(&image, &pixels::decode(next)?.0.into_rgba8())?, None)?.len(),
+    };
+    Ok([webp(&image, profile)?.len() as u64, step as u64])
+}
+
 /// From `before` to `after`: what is brighter above what is darker.
 fn step(before: &RgbaImage, after: &RgbaImage) -> Result<RgbaImage, String> {
     let (width, height) = after.dimensions();

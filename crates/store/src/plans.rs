@@ -32,18 +32,32 @@ pub struct PlannedTrial {
     /// The trial as the study plans it.
     #[serde(flatten)]
     pub trial: kelir_study::Trial,
-    /// The stimulus of each of its roles.
+    /// The stimulus of each of its roles, at the study's smallest size.
+    pub stimuli: BTreeMap<Role, StimulusHashes>,
+    /// The same at each further size, by rising width; none where the study has one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub larger: Vec<SizedStimuli>,
+}
+
+/// The stimuli of a trial at one size.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SizedStimuli {
+    /// [width, height] in pixels.
+    pub size: [u32; 2],
+    /// The stimulus of each role.
     pub stimuli: BTreeMap<Role, StimulusHashes>,
 }
 
 impl PlannedTrial {
-    /// What is shown, as a row of answers says it.
+    /// What is shown at a size, as a row of answers says it; at the smallest where none is said, or none that the study has.
     ///
     /// # Errors
     /// A role has no stimulus.
-    pub fn shown(&self) -> Result<BTreeMap<Role, ShownStimulus>, StoreError> {
+    pub fn shown(&self, size: Option<[u32; 2]>) -> Result<BTreeMap<Role, ShownStimulus>, StoreError> {
+        let larger = self.larger.iter().find(|larger| Some(larger.size) == size);
+        let stimuli = larger.map_or(&self.stimuli, |larger| &larger.stimuli);
         let of = |(role, placed): (&Role, &kelir_study::trials::Placed<'_>)| {
-            let hashes = self.stimuli.get(role).ok_or_else(|| {
+            let hashes = stimuli.get(role).ok_or_else(|| {
                 let message =
                     format!("item {} has no stimulus of condition {}", placed.item, placed.condition);
                 StoreError::corrupt("trial", message)

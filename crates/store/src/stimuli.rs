@@ -36,7 +36,7 @@ pub struct Render {
     pub provenance: Value,
 }
 
-/// What one item of a study shows under one condition.
+/// What one item of a study shows under one condition at one size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyStimulus {
     /// Item's id.
@@ -160,7 +160,7 @@ impl Store {
         .await
     }
 
-    /// What a version of a study shows, by item and condition.
+    /// What a version of a study shows, by item, condition and rising size.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -170,8 +170,7 @@ impl Store {
         version: &str,
     ) -> Result<Vec<StudyStimulus>, StoreError> {
         let rows = sqlx::query(
-            "SELECT v.*, s.width, s.height FROM version_stimuli v JOIN stimuli s USING (sha256)
-             WHERE study_id = $1 AND version = $2 ORDER BY item_id, condition",
+            "SELECT * FROM version_stimuli WHERE study_id = $1 AND version = $2 ORDER BY item_id, condition, width, height",
         )
         .bind(study_id)
         .bind(version)

@@ -200,5 +200,5 @@ fn new_trial(old: OldTrial, pixels: &PixelHashes) -> PlannedTrial {
         repeat: 0,
         kind: old.kind,
     };
-    PlannedTrial { trial, stimuli }
+    PlannedTrial { trial, stimuli, larger: Vec::new() }
 }

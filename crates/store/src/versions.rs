@@ -187,12 +187,23 @@ pub(crate) fn put_version(
         return Ok(version);
     }
     let mut insert = writer.prepare(
-        "INSERT INTO version_stimuli (study_id, version, item_id, condition, sha256, pixels_sha256, provenance)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+        "INSERT INTO version_stimuli (study_id, version, item_id, condition, width, height, sha256, pixels_sha256, provenance)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
     )?;
-    for StudyStimulus { item, condition, sha256, pixels_sha256, provenance, .. } in stimuli {
+    for StudyStimulus { item, condition, sha256, pixels_sha256, size: [width, height], provenance } in stimuli
+    {
         let provenance = provenance.to_string();
-        insert.execute(params![study.id, version, item, condition, sha256, pixels_sha256, provenance])?;
+        insert.execute(params![
+            study.id,
+            version,
+            item,
+            condition,
+            width,
+            height,
+            sha256,
+            pixels_sha256,
+            provenance
+        ])?;
     }
     Ok(version)
 }

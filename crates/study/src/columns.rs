@@ -92,10 +92,10 @@ pub struct TrialColumns {
     pub is_practice: u8,
     /// JSON array of the SHA-256 of the stimuli's files: left then right, or first then second.
     pub stimulus: String,
-    /// Width of a stimulus.
+    /// Width in its own pixels of the size at which the stimuli were shown.
     #[schema(extensions(("x-unit" = json!("px"))))]
     pub stimulus_width_px: u32,
-    /// Height of a stimulus.
+    /// Height in its own pixels of that size.
     #[schema(extensions(("x-unit" = json!("px"))))]
     pub stimulus_height_px: u32,
     /// Condition shown on the left; empty in trials of other kinds.
@@ -150,6 +150,8 @@ pub struct Answered<'a> {
     pub trial: &'a Trial,
     /// Hash of the file of each role.
     pub sha256: BTreeMap<Role, &'a str>,
+    /// The size at which they were shown.
+    pub size: [u32; 2],
     /// What was answered, as stored; `None` once withdrawn.
     pub answer: Option<&'a str>,
     /// All that the page sent; null once withdrawn.
@@ -210,7 +212,7 @@ const FIRST: [&str; 41] = [
 ];
 
 /// What pages send and rows say in columns of their own.
-const ELSEWHERE: [&str; 4] = ["choice", "viewport", "frames", "events"];
+const ELSEWHERE: [&str; 5] = ["choice", "viewport", "frames", "events", "stimulus_size"];
 
 /// The path of a page's field as a column: `requested_ms.first` is `requested_ms_first`.
 fn flat(name: &str) -> String {
@@ -287,7 +289,7 @@ impl Rows {
         let sent = match answered.payload {
             // Withdrawn.
             Value::Null => Sound { value: Value::Null, broken: Vec::new() },
-            payload => answered.trial.trial.rules().record().sound(payload),
+            payload => with_known_size(answered.trial.trial.rules().record().sound(payload), answered.study),
         };
         for (path, column) in &self.sent {
             let value = path.iter().try_fold(&sent.value, |value, key| value.get(key));
@@ -304,6 +306,17 @@ impl Rows {
         }
         self.names.iter().map(|name| values.get(name).map(plain).unwrap_or_default()).collect()
     }
+}
+
+/// A size that the study has not is none that a page can have shown.
+fn with_known_size(mut sent: Sound, study: &StudyDefinition) -> Sound {
+    const FIELD: &str = "stimulus_size";
+    let named = serde_json::from_value::<Option<[u32; 2]>>(sent.value[FIELD].clone());
+    let known = named.is_ok_and(|size| size.is_none_or(|size| study.sizes().contains(&size)));
+    if !known && !sent.broken.iter().any(|field| field == FIELD) {
+        sent.broken.push(FIELD.to_owned());
+    }
+    sent
 }
 
 fn trial_columns(answered: &Answered<'_>, sent: &Sound) -> TrialColumns {
@@ -338,8 +351,8 @@ fn trial_columns(answered: &Answered<'_>, sent: &Sound) -> TrialColumns {
         is_catch: is_catch.into(),
         is_practice: 0,
         stimulus: json!(hashes).to_string(),
-        stimulus_width_px: study.size[0],
-        stimulus_height_px: study.size[1],
+        stimulus_width_px: answered.size[0],
+        stimulus_height_px: answered.size[1],
         left_condition: condition(Role::Left),
         right_condition: condition(Role::Right),
         left_sha256: sha256(Role::Left),

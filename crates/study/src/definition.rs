@@ -2,6 +2,7 @@
 
 use crate::adaptive::Adaptive;
 use crate::conduct::{ResponseRules, SessionRules};
+use crate::display::DisplayRules;
 use crate::languages::{self, Translation};
 use crate::trials::{TrialKind, TrialName};
 use crate::visits::Flag;
@@ -22,8 +23,12 @@ pub struct StudyDefinition {
     pub question: String,
     /// Seed of every participant's trial plan, 0..=2^53.
     pub seed: u64,
-    /// Stimulus size [width, height] in pixels.
+    /// Stimulus size [width, height] in pixels; the smallest where there are several.
     pub size: [u32; 2],
+    /// In which sizes stimuli are made and shown, as far as the file says so.
+    // New optional keys are left out of the JSON at their default: adding one must not change older studies' hashes.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub display: DisplayRules,
     /// Linear luminance of the grey around the stimuli, 0..=1.
     pub surround: f64,
     /// How long taking part is said to take, in minutes.
@@ -39,7 +44,6 @@ pub struct StudyDefinition {
     /// Blocks in the order they are shown.
     pub blocks: Vec<Block>,
     /// Rules of exclusion, stated before there are results.
-    // New optional keys are left out of the JSON at their default: adding one must not change older studies' hashes.
     #[serde(default, skip_serializing_if = "is_default")]
     pub screening: Screening,
     /// Whose defaults the file has; files without one have the first's.
@@ -116,9 +120,29 @@ pub enum Condition {
     },
     /// Picture files, such as real photographs.
     Files {
-        /// Item id → path relative to the study file.
-        files: BTreeMap<String, String>,
+        /// By item id.
+        files: BTreeMap<String, Pictures>,
     },
+}
+
+/// Picture files of one item: paths relative to the study file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Pictures {
+    /// Of a study with one size.
+    One(String),
+    /// One for each of the study's sizes, in their order.
+    OfSizes(Vec<String>),
+}
+
+impl Pictures {
+    /// The paths, by rising size.
+    pub fn paths(&self) -> &[String] {
+        match self {
+            Pictures::One(path) => std::slice::from_ref(path),
+            Pictures::OfSizes(paths) => paths,
+        }
+    }
 }
 
 /// Pairs of the same two conditions, shown together and analysed together.

@@ -4,6 +4,7 @@
 
 mod conduct;
 mod definition;
+mod display;
 mod fields;
 mod languages;
 mod parse;
@@ -26,9 +27,10 @@ pub mod visits;
 
 pub use conduct::{NEWEST_EDITION, Repeat, ResponseRules, SessionRules};
 pub use definition::{
-    Block, Completion, Condition, Direction, GUESS, Item, Kind, Psychometric, Screening, StudyDefinition,
-    Texts,
+    Block, Completion, Condition, Direction, GUESS, Item, Kind, Pictures, Psychometric, Screening,
+    StudyDefinition, Texts,
 };
+pub use display::{DisplayRules, Fit};
 pub use languages::Translation;
 pub use plan::{Decision, Procedures, Trial, TrialPlan, next_trials};
 pub use problems::{Problem, StudyErrors};

@@ -7,6 +7,7 @@ mod psychometric;
 
 use crate::conduct::{NEWEST_EDITION, ResponseRules, SessionRules};
 use crate::definition::{Block, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts};
+use crate::display;
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, integer, number, text};
 use crate::languages;
 use crate::problems::{Problem, StudyErrors};
@@ -14,9 +15,6 @@ use crate::trials::TrialKind;
 use crate::visits::Flag;
 use std::collections::BTreeSet;
 use toml::{Table, Value};
-
-/// Two stimuli of width w and a gap of w/20 fit a 1280-pixel window with 16 pixels of margin on either side.
-const MAX_WIDTH: i64 = 608;
 
 pub(crate) const TITLE: &str = "a text of 1 to 200 characters";
 pub(crate) const QUESTION: &str = "a text of 1 to 300 characters";
@@ -84,14 +82,7 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
     let title = fields.need("title", TITLE, |v| text(v, 200));
     let question = fields.need("question", QUESTION, |v| text(v, 300));
     let seed = fields.need("seed", "an integer from 0 to 2^53", |v| integer(v, 0, 1 << 53));
-    let size = fields.need(
-        "size",
-        "[width, height] in pixels, width 16 to 608 (two fit a 1280-pixel window), height 16 to 2160",
-        |v| {
-            let [w, h] = v.as_array()?.as_slice() else { return None };
-            Some([integer(w, 16, MAX_WIDTH)? as u32, integer(h, 16, 2160)? as u32])
-        },
-    );
+    let (size, display) = display::read(gatherer, &mut fields);
     let surround = fields
         .get("surround", "a linear luminance from 0 to 1", |v| number(v, 0.0, 1.0))
         .or_else(|| fields_default(table, "surround", 0.2));
@@ -111,7 +102,8 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
     let language = languages::read_language(&mut fields);
     let translations = languages::read_translations(gatherer, &mut fields, language.as_deref());
     let blocks = read_blocks(gatherer, &mut fields);
-    let conditions = conditions::read(gatherer, &mut fields, &blocks);
+    let conditions =
+        conditions::read(gatherer, &mut fields, &blocks, size.map(|_| display.sizes.len().max(1)));
     fields.finish();
     Some(StudyDefinition {
         id,
@@ -119,6 +111,7 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
         question: question.unwrap_or_default(),
         seed: seed.unwrap_or_default(),
         size: size.unwrap_or_default(),
+        display,
         surround: surround.unwrap_or_default(),
         estimated_minutes: u32::try_from(estimated_minutes.unwrap_or_default()).ok()?,
         idle_minutes: u32::try_from(idle_minutes.unwrap_or_default()).ok()?,

@@ -38,6 +38,7 @@ pub(crate) fn noted(path: &str, asked: Option<(bool, &str)>) {
 
 /// Has every table, so that every key of each is asked for; whether its values are right does not matter.
 const SAMPLE: &str = r#"
+[display]
 [response]
 [session]
 [completion]

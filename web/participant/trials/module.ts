@@ -2,6 +2,7 @@
 import { type JsPsych, type JsPsychPlugin, ParameterType, type PluginInfo } from "jspsych";
 import type { Study, Trial } from "../api.ts";
 import type { Rules } from "../inputs/guard.ts";
+import type { Offered, Room, Size } from "../layout.ts";
 import type { Pictures } from "../stimuli.ts";
 import type { Plain } from "../words/index.ts";
 
@@ -10,6 +11,8 @@ export interface TrialModule {
   readonly plugin: (new (jsPsych: JsPsych) => JsPsychPlugin<never>) & { readonly info: PluginInfo };
   /** The names of its stimuli in a trial's `shown`. */
   readonly roles: readonly string[];
+  /** In which of the sizes that are offered its stimuli are shown, and how large, in a room. */
+  readonly fit: (offered: Offered, room: Room) => Size;
   /** What the page of instructions shows of it; of a study where that depends on how its pictures would stand now. */
   readonly legend: Legend | ((study: Study) => Legend);
   /** The plugin's parameters for one trial. */
@@ -36,7 +39,7 @@ export interface Given {
   trial: Trial;
   /** Where the trial stands, as "7 of 25". */
   position: string;
-  /** The stimuli by role: fetched, verified and decoded. */
+  /** The stimuli by role, at the size that fits now: fetched, verified and decoded. */
   load(): Promise<Pictures>;
   /** The display's refresh period in ms; null where it could not be measured. */
   refreshPeriod(): Promise<number | null>;
@@ -52,9 +55,11 @@ export const commonParameters = <const>{
   question: { type: ParameterType.STRING, default: undefined },
   /** Where the trial stands, as "7 of 25". */
   position: { type: ParameterType.STRING, default: "" },
-  /** Stimulus pixels; all pictures of a trial have this size. */
+  /** Stimulus pixels of the smallest size; all pictures of a trial have one size. */
   width: { type: ParameterType.INT, default: undefined },
   height: { type: ParameterType.INT, default: undefined },
+  /** What is done with more room than their size fills: "native", "integer" or "fill". */
+  fit: { type: ParameterType.STRING, default: "native" },
   /** Gives a promise of the fetched, verified and decoded pictures by role. */
   load: { type: ParameterType.FUNCTION, default: undefined },
   /** Gives a promise of the display's refresh period in ms, or of null where it could not be measured. */
@@ -81,6 +86,8 @@ export const commonData = <const>{
   input: { type: ParameterType.STRING },
   /** Device pixels per stimulus pixel, pinch zoom included: 1 is native. */
   scale: { type: ParameterType.FLOAT },
+  /** The size at which the stimuli were shown, in their pixels. */
+  stimulus_size: { type: ParameterType.INT, array: true },
   /** Width at which a stimulus stood, CSS px, pinch zoom included. */
   css_width_px: { type: ParameterType.FLOAT },
   device_pixel_ratio: { type: ParameterType.FLOAT },
@@ -112,6 +119,6 @@ export const rulesOf = ({ response }: Pick<Study, "response">): Rules => ({ min_
 
 /** Values of the common parameters. */
 export const common = ({ study, trial, position, load, refreshPeriod, onOnset, onChoice }: Given) => ({
-  ...{ question: study.question, position, width: trial.width, height: trial.height },
+  ...{ question: study.question, position, width: trial.width, height: trial.height, fit: study.display.fit },
   ...{ load, refresh_period: refreshPeriod, on_onset: onOnset, on_choice: onChoice, rules: rulesOf(study) },
 });

@@ -49,7 +49,7 @@ test("a window that changes is logged with how the stimuli stood from then on, a
   assert.deepEqual(first.at_onset, { scale: 1, css_width_px: 592, arrangement: "side", device_pixel_ratio: 1, viewport: [1280, 800] });
   assert.deepEqual([first.arrangement, first.viewport, first.css_width_px], ["stack", [500, 844], width]);
   const resizes = of(first, "resize");
-  assert.deepEqual(resizes.map(({ viewport, arrangement, css_width_px }) => [viewport, arrangement, css_width_px]), [[[390, 844], "stack", 362], [[500, 844], "stack", width]]);
+  assert.deepEqual(resizes.map(({ viewport, arrangement, css_width_px }) => [viewport, arrangement, css_width_px]), [[[390, 844], "stack", 370], [[500, 844], "stack", width]]);
   assert.deepEqual([second.geometry_changed, second.at_onset, of(second, "resize")], [0, undefined, []]);
 });
 

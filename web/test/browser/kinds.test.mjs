@@ -119,7 +119,7 @@ test("what was on the screen is stored: width, arrangement, and how long it was 
   assert.ok(first.hidden_ms >= 240 && Math.abs(first.min_visible_ms - (first.rt - first.hidden_ms)) < 0.01, JSON.stringify(first));
   assert.deepEqual([second.hidden_ms, second.min_visible_ms], [0, second.rt]);
   // An answer has these columns in this order, the additions apart.
-  const added = new Set(["css_width_px", "min_visible_ms", "geometry_changed", "events"]);
+  const added = new Set(["stimulus_size", "css_width_px", "min_visible_ms", "geometry_changed", "events"]);
   const before = ["choice", "rt", "onset", "input", "scale", "arrangement", "device_pixel_ratio", "viewport", "refresh_hz", "hidden_ms", "time_elapsed", "trial_type", "plugin_version", "reload_count", "timestamp"];
   assert.deepEqual(Object.keys(first).filter((column) => !added.has(column)), before);
 });

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use kelir_server::links::{Links, Visit, now};
 use kelir_server::shipped::{Shipped, is_file};
-use kelir_server::{Library, StudyFileError, check_study, results};
+use kelir_server::{HEAVY_BYTES, Library, StudyFileError, Weight, library_of, results};
 use serde_json::json;
 
 use super::checked::{Checked, problem_json};
@@ -143,28 +143,70 @@ fn versions(study: &str, data: &Path, format: Format) -> Result<()> {
     }
 }
 
+fn weight_json(weight: &Weight) -> serde_json::Value {
+    let Weight { block, size, bytes, is_exact } = weight;
+    json!({ "block": block, "size": size, "bytes": bytes, "is_exact": is_exact })
+}
+
+/// What a participant downloads, block by block and in all, at each size; what is heavy is said.
+fn weights_text(weights: &[Weight], sizes: &[[u32; 2]]) -> String {
+    let megabytes = |bytes: u64, is_exact: bool| {
+        format!("{}{:.2} MB", if is_exact { "" } else { "about " }, bytes as f64 / 1e6)
+    };
+    let mut lines = Vec::new();
+    for size @ [width, height] in sizes {
+        let of_size: Vec<&Weight> = weights.iter().filter(|weight| weight.size == *size).collect();
+        let all = of_size.iter().map(|weight| weight.bytes).sum();
+        let blocks: Vec<String> =
+            of_size.iter().map(|w| format!("{} {}", w.block, megabytes(w.bytes, w.is_exact))).collect();
+        let is_exact = of_size.iter().all(|weight| weight.is_exact);
+        lines.push(format!(
+            "  a participant downloads at {width} × {height}: {} ({})",
+            megabytes(all, is_exact),
+            blocks.join(", ")
+        ));
+        if all > HEAVY_BYTES {
+            lines.push(format!(
+                "  that is heavy: above {} a slow line (1.6 Mbit/s) takes more than half a minute; fewer or shorter animations, or a smaller size, weigh less",
+                megabytes(HEAVY_BYTES, true)
+            ));
+        }
+    }
+    lines.join("\n")
+}
+
 fn check(files: &[PathBuf], json: bool) -> Result<()> {
     let mut checked = Checked::new(json);
     for file in files {
-        let study = match is_file(file) {
-            true => check_study(file),
+        let found = match is_file(file) {
+            true => library_of(file),
             false => match Shipped::Study.path(&file.to_string_lossy()) {
-                Ok(path) => Library::built_in().rehearsed(&path),
+                Ok(path) => Ok((Library::built_in(), path)),
                 Err(rule) => {
                     checked.unreadable(file, rule);
                     continue;
                 }
             },
         };
+        let study = found.and_then(|(library, path)| {
+            let study = library.rehearsed(&path)?;
+            let weights = library.weights(&path, &study);
+            Ok((study, weights))
+        });
         match study {
-            Ok(study) => {
+            Ok((_, Err(error))) => checked.unreadable(file, error),
+            Ok((study, Ok(weights))) => {
                 let adaptive = study.blocks.iter().any(|b| b.adaptive.is_some());
                 let (blocks, trials) = (study.blocks.len(), study.most_trials());
                 let most = if adaptive { "at most " } else { "" };
                 let about = json!({ "study": study.id, "blocks": blocks, "trials_at_most": trials, "adaptive": adaptive,
-                    "design_hash": study.design_hash() });
+                    "design_hash": study.design_hash(), "weights": weights.iter().map(weight_json).collect::<Vec<_>>(),
+                    "heavy_bytes": HEAVY_BYTES });
                 let details = format!("blocks: {blocks}, trials: {most}{trials}");
                 checked.good(file, &details, about, &study.warnings(&file.display().to_string()))?;
+                if !json {
+                    print(&weights_text(&weights, study.sizes()))?;
+                }
             }
             Err(StudyFileError::Invalid(errors)) => {
                 checked.wrong(file, errors.to_string(), errors.0.iter().map(problem_json).collect());

@@ -176,6 +176,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
     let stimulus = |item: &str, condition: &str, rmse: f64| Stimulus {
         item: item.to_owned(),
         condition: condition.to_owned(),
+        size: [64, 36],
         sha256: "5f".repeat(32),
         pixels_sha256: "a0".repeat(32),
         provenance: if rmse > 0.0 {
@@ -211,6 +212,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
             stimulus("photo-a", "pa", 0.004),
             stimulus("loop-a", "pa", 0.0),
         ],
+        shown: Vec::new(),
         other_versions: Vec::new(),
         chain: Chain { rows: 0, head: "0".repeat(64), faults: Vec::new(), blanked: 0 },
         paper: None,

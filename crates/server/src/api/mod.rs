@@ -19,10 +19,10 @@ pub use lists::ListQuery;
 pub use problem::{Problem, ProblemCode, StoredAnswer};
 pub use sessions::{
     Acknowledgement, Completion, CreatedSession, Held, Known, NewSession, SessionState, SessionStatus,
-    StimulusRef, Trial,
+    SizedStimuli, StimulusRef, Trial,
 };
 pub use studies::{
-    Codebook, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, VersionList,
+    Codebook, Display, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, VersionList,
 };
 pub use versions::{Pooling, version_ref};
 

@@ -75,17 +75,30 @@ pub struct Trial {
     pub item_index: u32,
     /// Stills or animations.
     pub kind: Kind,
-    /// What is shown, by role: `left` and `right`, or `first` and `second`.
+    /// What is shown at the study's smallest size, by role: `left` and `right`, or `first` and `second`.
     pub shown: BTreeMap<Role, StimulusRef>,
+    /// The same at each further size, by rising width; all stimuli of a trial are shown at one size.
+    pub larger: Vec<SizedStimuli>,
     /// Settings of its kind; null for kinds that have none.
     #[schema(required)]
     pub settings: Option<TrialSettings>,
-    /// Width of its stimuli in pixels.
+    /// Width in pixels of the smallest size.
     pub width: u32,
-    /// Height of its stimuli in pixels.
+    /// Height in pixels of the smallest size.
     pub height: u32,
     /// Whether its answer is stored.
     pub answered: bool,
+}
+
+/// What a trial shows at one size.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct SizedStimuli {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// What is shown, by role.
+    pub shown: BTreeMap<Role, StimulusRef>,
 }
 
 /// Where a session stands.

@@ -3,7 +3,7 @@
 use kelir_report::Participants;
 use kelir_study::schema::{Column, worded};
 use kelir_study::trials::TrialName;
-use kelir_study::{ResponseRules, Texts, Translation};
+use kelir_study::{Fit, ResponseRules, Texts, Translation};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
@@ -19,9 +19,11 @@ pub struct Study {
     pub question: String,
     /// Linear luminance of the grey around the stimuli, 0 to 1.
     pub surround: f64,
-    /// Stimulus size [width, height] in pixels.
+    /// Stimulus size [width, height] in pixels; the smallest where there are several.
     #[schema(min_items = 2, max_items = 2, value_type = Vec<u32>)]
     pub size: [u32; 2],
+    /// In which sizes stimuli are made and shown.
+    pub display: Display,
     /// What participants read.
     pub texts: Texts,
     /// The language of title, question and texts (BCP 47).
@@ -36,6 +38,16 @@ pub struct Study {
     pub per_visit: bool,
     /// Kinds of trial, in the order of first use.
     pub trial_kinds: Vec<TrialName>,
+}
+
+/// In which sizes stimuli are made and shown.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct Display {
+    /// Sizes [width, height] at which each stimulus is made, in pixels, by rising width.
+    #[schema(min_items = 1)]
+    pub sizes: Vec<[u32; 2]>,
+    /// What a page does with more room than a size fills.
+    pub fit: Fit,
 }
 
 worded! {

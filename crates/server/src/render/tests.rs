@@ -146,3 +146,28 @@ fn a_scene_that_changes_meanwhile_is_refused() {
     let said = maker.make(&task, &library, &mut |_, _| ()).unwrap_err();
     assert!(said.contains("scenes/lamp.toml") && said.contains("changed"), "{said}");
 }
+
+/// A photograph at a larger size is the same photograph: its blur is as wide in the scene, and its noise has the same power there.
+#[test]
+fn a_camera_sees_alike_at_each_size() {
+    let camera = "technique = \"pa\"\ncamera = { defocus_px = 0.8, noise = 0.012, seed = 7 }";
+    let study = STUDY
+        .replace("size = [64, 36]\n", "")
+        .replacen("[texts]", "[display]\nsizes = [[64, 36], [160, 90]]\n[texts]", 1)
+        .replacen("technique = \"pa\"", camera, 1);
+    let (stills, _) = study.rsplit_once("[[blocks]]").unwrap();
+    let (_folder, library) = library(stills);
+    let study = library.study("studies/s.toml").unwrap_or_else(|errors| panic!("{errors}"));
+    let jobs: Vec<_> =
+        tasks(&study).iter().filter(|t| t.name == "pa").map(|task| job(task).unwrap()).collect();
+    let settings: Vec<_> = jobs.iter().map(|job| (job.view.size, job.camera.unwrap())).collect();
+    let [(small, first), (large, second)] = settings[..] else { panic!("{settings:?}") };
+    assert_eq!((small, first.defocus_px, first.noise), ([64, 36], 0.8, 0.012));
+    assert_eq!((large, second.defocus_px, second.noise), ([160, 90], 2.0, 0.03));
+    assert_eq!((second.vignette, second.jpeg_quality, second.seed), (first.vignette, first.jpeg_quality, 7));
+    // What is too much at the largest size is told with the study.
+    let wide = stills.replace("defocus_px = 0.8", "defocus_px = 60");
+    let (_folder, library) = self::library(&wide);
+    let said = library.study("studies/s.toml").unwrap_err().to_string();
+    assert!(said.contains("conditions.pa.camera") && said.contains("defocus_px = 150"), "{said}");
+}

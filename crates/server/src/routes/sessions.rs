@@ -3,6 +3,7 @@
 use super::studies::{StudyPath, told};
 use super::{Answered, Fresh, links, previews};
 use crate::address::ClientAddress;
+use crate::api;
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Held, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, Trial, refusals,
@@ -17,7 +18,7 @@ use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{
     Appended, Begun, Completed, NextTrials, PlannedSession, PlannedTrial, Progress, SentAnswer, Session,
-    SessionKind, StimulusHashes, StoreError, Taken, sha256_hex,
+    SessionKind, SizedStimuli, StimulusHashes, StoreError, Taken, sha256_hex,
 };
 use kelir_study::visits::Flag;
 use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
@@ -167,13 +168,22 @@ pub(super) fn planned(
     trials: Vec<kelir_study::Trial>,
 ) -> Result<Vec<PlannedTrial>, Box<Problem>> {
     let fill = |trial: kelir_study::Trial| {
-        let mut hashes = BTreeMap::new();
+        let mut sizes: Vec<SizedStimuli> = Vec::new();
         for (role, placed) in &trial.shown {
-            let stimulus = stimuli.get(&placed.item, &placed.condition).map_err(Problem::internal)?;
-            let (sha256, pixels_sha256) = (stimulus.sha256.clone(), stimulus.pixels_sha256.clone());
-            hashes.insert(*role, StimulusHashes { sha256, pixels_sha256 });
+            if sizes.is_empty() {
+                let of = stimuli.of(&placed.item, &placed.condition).map_err(Problem::internal)?;
+                sizes =
+                    of.iter().map(|one| SizedStimuli { size: one.size, stimuli: BTreeMap::new() }).collect();
+            }
+            for (rank, of_size) in sizes.iter_mut().enumerate() {
+                let found = stimuli.at(&placed.item, &placed.condition, rank).map_err(Problem::internal)?;
+                let (sha256, pixels_sha256) = (found.sha256.clone(), found.pixels_sha256.clone());
+                of_size.stimuli.insert(*role, StimulusHashes { sha256, pixels_sha256 });
+            }
         }
-        Ok(PlannedTrial { trial, stimuli: hashes })
+        let larger = sizes.split_off(sizes.len().min(1));
+        let smallest = sizes.pop().map(|smallest| smallest.stimuli).unwrap_or_default();
+        Ok(PlannedTrial { trial, stimuli: smallest, larger })
     };
     trials.into_iter().map(fill).collect()
 }
@@ -318,9 +328,8 @@ async fn take(
         Ok(session)
     };
     let check = move |trial: &kelir_study::Trial| {
-        let checked = trial.trial.rules().check(&value);
         let refused = |errors| Turned::Away(Problem::fields(ProblemCode::InvalidField, errors));
-        Ok(checked.map_err(refused)?.answer)
+        trial.trial.rules().check(&value).map_err(refused)
     };
     let next = move |session: &Session, progress: Progress| {
         let unloaded = || Turned::Unloaded(Box::new(session.clone()));
@@ -440,13 +449,20 @@ pub(super) async fn trials_of(
     let mut trials = Vec::with_capacity(planned.len());
     for planned in planned {
         let trial = &planned.trial;
+        let mut told = app.presenter.tell(&app.store, whose, planned).await?.into_iter();
+        let shown = told.next().unwrap_or_default();
+        let larger =
+            planned.larger.iter().zip(told).map(|(SizedStimuli { size: [width, height], .. }, shown)| {
+                api::SizedStimuli { width: *width, height: *height, shown }
+            });
         trials.push(Trial {
             trial_index: trial.trial_index,
             trial: trial.trial.rules().name(),
             block_index: trial.block_index,
             item_index: trial.item_index,
             kind: trial.kind,
-            shown: app.presenter.tell(&app.store, whose, planned).await?,
+            shown,
+            larger: larger.collect(),
             settings: trial.trial.settings(),
             width,
             height,

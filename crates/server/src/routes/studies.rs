@@ -1,7 +1,9 @@
 //! Studies: what anybody may know of one, and the researchers' lists of them and of their versions.
 
 use super::{Answered, Fresh};
-use crate::api::{ListQuery, Progress, Study, StudyList, StudyStatus, StudySummary, VersionList, refusals};
+use crate::api::{
+    Display, ListQuery, Progress, Study, StudyList, StudyStatus, StudySummary, VersionList, refusals,
+};
 use crate::app::{App, BrokenStudy, LoadedStudy, Stimuli, idle};
 use crate::extract::{Parameters, Query, Researcher};
 use axum::extract::State;
@@ -44,6 +46,7 @@ pub(super) fn told(study: &StudyDefinition) -> Study {
         question: study.question.clone(),
         surround: study.surround,
         size: study.size,
+        display: Display { sizes: study.sizes().to_vec(), fit: study.fit() },
         texts: study.texts.clone(),
         language: study.language.clone(),
         translations: study.translations.clone(),

@@ -10,5 +10,6 @@ mod persons;
 mod placeholder;
 mod presenting;
 mod research;
+mod sizes;
 mod taking_part;
 mod versions;

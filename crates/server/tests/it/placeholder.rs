@@ -16,7 +16,7 @@ pub struct Placeholder {
 
 impl Maker for Placeholder {
     fn identity(&self, task: &Task<'_>, _: &Library) -> Result<String, String> {
-        Ok(format!("placeholder {:?} {:?} {:?} {:?}", task.study.size, task.pair, task.name, task.condition))
+        Ok(format!("placeholder {:?} {:?} {:?} {:?}", task.size, task.pair, task.name, task.condition))
     }
 
     fn make(
@@ -32,7 +32,7 @@ impl Maker for Placeholder {
         let png = "image/png".to_owned();
         match task.block.kind {
             Kind::Still => {
-                let bytes = disc(task.study.size, seed, 0.0, rough);
+                let bytes = disc(task.size, seed, 0.0, rough);
                 Ok(Made { media_type: png, bytes, attachments: Vec::new(), provenance })
             }
             Kind::Animation => {
@@ -40,11 +40,11 @@ impl Maker for Placeholder {
                 for i in 0..12 {
                     progress(f64::from(i) / 12.0, "drawing frames");
                     let phase = std::f64::consts::TAU * f64::from(i) / 12.0;
-                    frames.push((png.clone(), disc(task.study.size, seed, phase.sin(), rough)));
+                    frames.push((png.clone(), disc(task.size, seed, phase.sin(), rough)));
                 }
                 let names: Vec<String> =
                     frames.iter().map(|(_, bytes)| kelir_store::sha256_hex(bytes)).collect();
-                let [width, height] = task.study.size;
+                let [width, height] = task.size;
                 let manifest =
                     json!({ "fps": 12, "loop": true, "width": width, "height": height, "frames": names });
                 Ok(Made {

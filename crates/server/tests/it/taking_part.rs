@@ -312,7 +312,7 @@ async fn a_stimulus_that_is_missing_is_an_error_and_never_an_empty_hash() {
         .remove(0);
     let mut lacking = trials[0].clone();
     lacking.stimuli.clear();
-    let error = lacking.shown().unwrap_err().to_string();
+    let error = lacking.shown(None).unwrap_err().to_string();
     assert!(error.contains("has no stimulus of condition"), "{error}");
     assert_eq!(made.sha256.len(), 64);
     assert_eq!(client.choose(&path, &token, 0, "left").await.status, StatusCode::OK);

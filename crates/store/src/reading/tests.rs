@@ -46,7 +46,7 @@ async fn take(store: &Store, people: usize) {
             let plan = TrialPlan::for_slot(&planned, slot);
             let stimuli =
                 |trial: &kelir_study::Trial| trial.shown.keys().map(|role| (*role, hashes.clone())).collect();
-            let filled = |trial| PlannedTrial { stimuli: stimuli(&trial), trial };
+            let filled = |trial| PlannedTrial { stimuli: stimuli(&trial), trial, larger: Vec::new() };
             let trials = plan.trials.into_iter().map(filled).collect();
             Ok::<_, StoreError>(PlannedSession { seed: plan.seed, next: NextTrials { trials, more: false } })
         };
@@ -60,7 +60,7 @@ async fn take(store: &Store, people: usize) {
             let chose_first = (i * 7 + trial_index as usize).is_multiple_of(3);
             let sent = rules.simulate(chose_first, 100.1 * (i + 1) as f64 + f64::from(trial_index));
             let answer = rules.check(&sent).unwrap().answer;
-            let new = NewAnswer { trial_index, answer, payload: sent.to_string() };
+            let new = NewAnswer { trial_index, answer, payload: sent.to_string(), stimulus_size: None };
             let nothing = |_| Ok::<_, StoreError>(NextTrials::default());
             store.append_answer(session, &new, nothing).await.unwrap();
         }

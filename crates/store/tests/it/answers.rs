@@ -30,7 +30,7 @@ async fn the_first_answer_stands_and_the_code_waits_for_the_last() {
     assert_eq!(row.answer.as_deref(), Some(r#"{"choice":"left","rt_ms":500}"#));
     assert_eq!(row.payload, Some(answer(1, true, 500.0).payload));
     let planned = &store.trials(&session.session_id).await.unwrap()[1];
-    assert_eq!(row.shown, planned.shown().unwrap());
+    assert_eq!(row.shown, planned.shown(None).unwrap());
     let left = &row.shown[&Role::Left];
     let shown = served.stimuli.iter().find(|s| (&s.item, &s.condition) == (&left.item, &left.condition));
     assert_eq!(left.pixels_sha256, shown.unwrap().pixels_sha256);

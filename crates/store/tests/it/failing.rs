@@ -2,6 +2,7 @@
 
 use crate::setting::{IDLE, answer, append, begin, open, stranger};
 use kelir_store::{Appended, NextTrials, SentAnswer, Session, Store, StoreError, Trouble};
+use kelir_study::trials::Checked;
 
 async fn try_append(store: &Store, session: &Session, trial: u32) -> Result<Appended, StoreError> {
     let nothing = |_| -> Result<NextTrials, StoreError> { panic!("a whole plan was asked to go on") };
@@ -32,7 +33,9 @@ async fn a_job_that_fails_or_panics_takes_no_other_with_it() {
         tokio::spawn(async move {
             // Trials 0 to 2 are there; the rest of what is asked for is not, is refused or falls over.
             let check = move |_: &kelir_study::Trial| match n {
-                0..3 => Ok(r#"{"choice":"left","rt_ms":1}"#.to_owned()),
+                0..3 => {
+                    Ok(Checked { answer: r#"{"choice":"left","rt_ms":1}"#.to_owned(), stimulus_size: None })
+                }
                 _ if n % 2 == 0 => Err(StoreError::Undecodable("no answer".to_owned())),
                 _ => panic!("on purpose"),
             };

@@ -13,6 +13,7 @@ mod properties;
 mod refusing;
 mod sessions;
 mod setting;
+mod sizes;
 mod slots;
 mod upgrading;
 mod versions;

@@ -149,6 +149,7 @@ async fn holds(
         trial_index: 0,
         answer: kelir_jcs::canonical(case.answer).unwrap(),
         payload: written.unwrap(),
+        stimulus_size: None,
     };
     prop_assert_eq!(append(store, &session, new.clone()).await, Appended::Stored);
     prop_assert_eq!(append(store, &session, new.clone()).await, Appended::Same);

@@ -66,9 +66,9 @@ const REFUSED: [(&str, &[&str]); 8] = [
             "UPDATE version_stimuli SET pixels_sha256 = 'x'",
             "UPDATE version_stimuli SET provenance = '{}'",
             "DELETE FROM version_stimuli",
-            "INSERT OR REPLACE INTO version_stimuli SELECT study_id, version, item_id, condition, sha256, 'x', provenance FROM version_stimuli
+            "INSERT OR REPLACE INTO version_stimuli SELECT study_id, version, item_id, condition, width, height, sha256, 'x', provenance FROM version_stimuli
              WHERE study_id = 'shadow-puppets'",
-            "INSERT INTO version_stimuli SELECT study_id, version, 'another', condition, sha256, 'x', provenance FROM version_stimuli
+            "INSERT INTO version_stimuli SELECT study_id, version, 'another', condition, width, height, sha256, 'x', provenance FROM version_stimuli
              WHERE study_id = 'small' LIMIT 1",
         ],
     ),

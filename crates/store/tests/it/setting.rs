@@ -7,7 +7,7 @@ use kelir_store::{
     StimulusHashes, Store, StoreError, StudyStimulus,
 };
 use kelir_study::plan::{Decision, next_trials};
-use kelir_study::trials::TrialRules;
+use kelir_study::trials::{Checked, TrialRules};
 use kelir_study::{StudyDefinition, Trial, TrialPlan};
 use serde_json::json;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
@@ -75,6 +75,14 @@ pub fn png(shade: u8, compression: CompressionType) -> Vec<u8> {
     bytes
 }
 
+/// A square picture of one shade.
+pub fn square(shade: u8, side: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let pixels = vec![shade; (side * side) as usize];
+    PngEncoder::new(&mut bytes).write_image(&pixels, side, side, ExtendedColorType::L8).unwrap();
+    bytes
+}
+
 /// A study that is served.
 #[derive(Clone)]
 pub struct Served {
@@ -123,7 +131,7 @@ impl Served {
             StimulusHashes { sha256: found.sha256.clone(), pixels_sha256: found.pixels_sha256.clone() }
         };
         let stimuli = trial.shown.iter().map(|(role, p)| (*role, hashes(&p.item, &p.condition))).collect();
-        PlannedTrial { trial, stimuli }
+        PlannedTrial { trial, stimuli, larger: Vec::new() }
     }
 
     /// The beginning of a slot's plan.
@@ -175,7 +183,8 @@ pub fn newcomer(served: &Served, idle: Duration) -> NewSession {
 /// An answer as a page sends it to a kind of trial.
 pub fn answer_of(rules: &dyn TrialRules, trial_index: u32, chose_first: bool, rt_ms: f64) -> NewAnswer {
     let sent = rules.simulate(chose_first, rt_ms);
-    NewAnswer { trial_index, answer: rules.check(&sent).unwrap().answer, payload: sent.to_string() }
+    let Checked { answer, stimulus_size } = rules.check(&sent).unwrap();
+    NewAnswer { trial_index, answer, payload: sent.to_string(), stimulus_size }
 }
 
 /// An answer to a still.

@@ -117,7 +117,7 @@ async fn a_plan_that_was_brought_over_shows_what_it_showed() {
             );
             assert_eq!(old["kind"], serde_json::to_value(trial.kind).unwrap());
             assert_eq!(old["target_left"], trial.is_first("pa"));
-            for (role, shown) in planned.shown().unwrap() {
+            for (role, shown) in planned.shown(None).unwrap() {
                 assert_eq!(
                     (old[role.as_str()].as_str(), &shown.item),
                     (Some(&*shown.condition), &trial.item_id)

@@ -96,6 +96,7 @@ fn a_row_says_of_each_kind_what_was_shown_and_chosen_and_leaves_other_kinds_colu
                 session: &session,
                 trial: &trial,
                 sha256: sha256.clone(),
+                size: [1110, 624],
                 answer: Some(&answer),
                 payload: &payload,
                 payload_hash: Some("ph".to_owned()),

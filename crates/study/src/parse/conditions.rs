@@ -1,7 +1,7 @@
 //! `[conditions.NAME]`: how pictures come to be.
 
 use super::relative;
-use crate::definition::{Block, Condition, Kind};
+use crate::definition::{Block, Condition, Kind, Pictures};
 use crate::fields::{Fields, Gatherer, IDENTIFIER, identifier, text};
 use serde_json::Value as Json;
 use std::collections::BTreeMap;
@@ -12,6 +12,7 @@ pub(super) fn read(
     gatherer: &Gatherer<'_>,
     fields: &mut Fields<'_>,
     blocks: &[Block],
+    sizes: Option<usize>,
 ) -> BTreeMap<String, Condition> {
     let mut conditions = BTreeMap::new();
     let value = fields.need("conditions", "a table of conditions", Some);
@@ -29,7 +30,7 @@ pub(super) fn read(
         if !blocks.iter().any(|b| b.conditions.contains(name)) {
             gatherer.report(&path, None, "no block uses this condition");
         }
-        if let Some(condition) = read_condition(gatherer, &path, value, name, blocks) {
+        if let Some(condition) = read_condition(gatherer, &path, value, (name, blocks, sizes)) {
             conditions.insert(name.clone(), condition);
         }
     }
@@ -58,8 +59,7 @@ fn read_condition(
     gatherer: &Gatherer<'_>,
     path: &str,
     value: &Value,
-    name: &str,
-    blocks: &[Block],
+    (name, blocks, sizes): (&str, &[Block], Option<usize>),
 ) -> Option<Condition> {
     let mut fields = Fields::of(gatherer, path.to_owned(), value)?;
     let mut users = blocks.iter().filter(|b| b.conditions.iter().any(|c| c == name));
@@ -67,7 +67,7 @@ fn read_condition(
         if users.any(|b| b.kind == Kind::Animation) {
             fields.report("files", None, "a picture file cannot be an animation; use a technique");
         }
-        let files = read_files(gatherer, &fields.path_of("files"), files, name, blocks);
+        let files = read_files(gatherer, &fields.path_of("files"), files, (name, blocks, sizes));
         fields.finish();
         return Some(Condition::Files { files: files? });
     }
@@ -131,9 +131,8 @@ fn read_files(
     gatherer: &Gatherer<'_>,
     path: &str,
     value: &Value,
-    name: &str,
-    blocks: &[Block],
-) -> Option<BTreeMap<String, String>> {
+    (name, blocks, sizes): (&str, &[Block], Option<usize>),
+) -> Option<BTreeMap<String, Pictures>> {
     let Some(table) = value.as_table() else {
         gatherer.report(path, Some(value), "must be a table of pair id = picture file");
         return None;
@@ -145,21 +144,42 @@ fn read_files(
         if !users().any(|b| b.items.iter().any(|p| p.id == *pair)) {
             gatherer.report(&field, Some(value), "no block with this condition has a pair of this id");
         }
-        let picture =
-            |s: &str| [".png", ".jpg", ".jpeg"].iter().any(|end| s.to_ascii_lowercase().ends_with(end));
-        match text(value, 400).filter(|s| relative(s) && picture(s)) {
-            Some(file) => {
-                files.insert(pair.clone(), file);
+        match pictures(value, sizes) {
+            Ok(paths) => {
+                files.insert(pair.clone(), paths);
             }
-            None => gatherer.report(
-                &field,
-                Some(value),
-                "must be a .png, .jpg or .jpeg file relative to the study file",
-            ),
+            Err(rule) => gatherer.report(&field, Some(value), rule),
         }
     }
     for pair in users().flat_map(|b| &b.items).filter(|p| !table.contains_key(&p.id)) {
         gatherer.report(&format!("{path}.{}", pair.id), None, "missing; every pair needs its picture");
     }
     Some(files)
+}
+
+/// The picture files of one item, one for each of `sizes` where that is known; or the rule that the value breaks.
+fn pictures(value: &Value, sizes: Option<usize>) -> Result<Pictures, String> {
+    let path = |value: &Value| {
+        let picture =
+            |s: &str| [".png", ".jpg", ".jpeg"].iter().any(|end| s.to_ascii_lowercase().ends_with(end));
+        text(value, 400).filter(|s| relative(s) && picture(s))
+    };
+    let (listed, one) = (value.as_array(), std::slice::from_ref(value));
+    let given = listed.map_or(one, Vec::as_slice);
+    if let Some(sizes) = sizes.filter(|sizes| given.len() != *sizes) {
+        let of_study = if sizes == 1 { "1 size".to_owned() } else { format!("{sizes} sizes") };
+        return Err(format!(
+            "has {} for the study's {of_study}; a picture for each, in the order of display.sizes",
+            if given.len() == 1 { "1 picture".to_owned() } else { format!("{} pictures", given.len()) }
+        ));
+    }
+    let mut paths = given
+        .iter()
+        .map(path)
+        .collect::<Option<Vec<String>>>()
+        .ok_or("must be a .png, .jpg or .jpeg file relative to the study file")?;
+    Ok(match paths.len() {
+        1 => Pictures::One(paths.remove(0)),
+        _ => Pictures::OfSizes(paths),
+    })
 }

@@ -83,14 +83,14 @@ fn the_hash_follows_values_and_not_layout_and_the_definition_survives_its_json()
 fn every_problem_is_reported_with_field_value_and_rule() {
     let bad = GOOD
         .replace("seed = 7", "seed = -7\nsurrond = 0.2")
-        .replace("size = [592, 333]", "size = [900, 333]")
+        .replace("size = [592, 333]", "size = [9000, 333]")
         .replace("spp = 64", "spp = nan")
         .replace("id = \"b\"", "id = \"a\"")
         .replace("target = \"pa\"\npairs = [{ id = \"a\"", "target = \"photo\"\npairs = [{ id = \"a\"");
     let found = problems(&bad);
     for expected in [
         "studies/two.toml: seed = -7: must be an integer from 0 to 2^53",
-        "studies/two.toml: size = [900, 333]: must be [width, height] in pixels",
+        "studies/two.toml: size = [9000, 333]: must be [width, height] in pixels",
         "studies/two.toml: surrond = 0.2: unknown key",
         "studies/two.toml: conditions.mc.spp = nan: must be a finite number",
         "studies/two.toml: blocks[0].pairs[1].id = \"a\": must be unique",

@@ -17,6 +17,7 @@ fn study(seed: u64, items: &[usize]) -> StudyDefinition {
         question: "Which?".to_owned(),
         seed,
         size: [64, 36],
+        display: Default::default(),
         surround: 0.2,
         estimated_minutes: 1,
         idle_minutes: 60,

@@ -59,7 +59,8 @@ impl TrialRules for ChoiceOfTwo {
         let whole = |error: kelir_jcs::Error| {
             vec![FieldError { pointer: String::new(), value: None, rule: error.to_string() }]
         };
-        Ok(Checked { answer: kelir_jcs::canonical(answer).map_err(whole)? })
+        let stimulus_size = serde_json::from_value(value["stimulus_size"].clone()).ok().flatten();
+        Ok(Checked { answer: kelir_jcs::canonical(answer).map_err(whole)?, stimulus_size })
     }
 
     fn record(&self) -> &Record {

@@ -12,7 +12,7 @@ mod two_alternative;
 mod two_interval;
 
 pub use events::{EventKind, Ignored, TrialEvent};
-pub use taken::{Arrangement, FrameLog, Geometry, Input, Length, Taken};
+pub use taken::{Arrangement, FrameLog, Geometry, Input, Length, Pixels, Taken};
 pub use two_alternative::{Side, TwoAlternativeAnswer};
 pub use two_interval::{Intervals, StepFrames, StepTimes, TwoIntervalAnswer, Which};
 
@@ -110,6 +110,8 @@ pub(crate) fn owned<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Shown<
 pub struct Checked {
     /// What was answered, as canonical JSON: it is stored and hashed as it is.
     pub answer: String,
+    /// The size at which the page says that it showed the stimuli, [width, height] in their pixels.
+    pub stimulus_size: Option<[u32; 2]>,
 }
 
 /// What the statistics take from an answer.

@@ -76,6 +76,11 @@ pub struct FrameLog {
 #[schema(minimum = 0)]
 pub struct Length(pub f64);
 
+/// A length in whole pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(minimum = 1, maximum = 65536)]
+pub struct Pixels(pub u32);
+
 /// How stimuli stand on the page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Geometry {
@@ -125,6 +130,10 @@ pub struct Taken {
     /// What the answer was given with.
     #[serde(default)]
     pub input: Option<Input>,
+    /// Width and height of the size at which the stimuli were shown, in their own pixels: one of the study's. Absent: the smallest.
+    #[serde(default)]
+    #[schema(min_items = 2, max_items = 2)]
+    pub stimulus_size: Option<Vec<Pixels>>,
     /// How the stimuli stood at the answer.
     #[serde(flatten)]
     pub geometry: Geometry,

@@ -2,6 +2,7 @@
 import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Rules } from "../../inputs/guard.ts";
+import type { Pixels } from "../../layout.ts";
 import { type Given, inputs } from "../../inputs/watch.ts";
 import { eventLog } from "./events.ts";
 import { frameAt } from "../../steady.ts";
@@ -26,6 +27,8 @@ export interface Options<Role extends Chosen> {
   keys(): Record<string, Role>;
   /** How the stimuli stand now. */
   geometry(): Geometry;
+  /** The size at which they are shown, in their own pixels. */
+  pixels: Pixels;
   rules: Rules;
   /** jsPsych's simulation presses buttons by script, which nobody else may. */
   simulated: boolean;
@@ -93,6 +96,7 @@ export class Taking<Role extends Chosen> {
       rt: rounded(at - this.#onset),
       onset: rounded(this.#onset),
       input,
+      stimulus_size: [...this.#options.pixels],
       ...now,
       refresh_hz: periodMs === null ? null : rounded(1000 / periodMs),
       hidden_ms: rounded(this.#hiddenMs()),

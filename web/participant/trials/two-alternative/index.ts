@@ -8,8 +8,8 @@ import plugin from "./plugin.ts";
 const how = { touch: "how-pair-touch", click: "how-pair-click" } as const;
 
 /** The keys lie as the pictures would stand in the window as it is. */
-function legend({ question, size: [width = 0, height = 0] }: Study): Legend {
-  const stacked = fitPair({ width, height, ...roomFor(question) }).arrangement === "stack";
+function legend({ question, display }: Study): Legend {
+  const stacked = fitPair(display, roomFor(question)).arrangement === "stack";
   const [first, second] = stacked ? ([{ keys: ["↑"], label: "key-upper" }, { keys: ["↓"], label: "key-lower" }] as const) : ([{ keys: ["←"], label: "key-left" }, { keys: ["→"], label: "key-right" }] as const);
   return { title: "kind-two-alternative", how, stacked, answers: [first, second] };
 }
@@ -17,6 +17,7 @@ function legend({ question, size: [width = 0, height = 0] }: Study): Legend {
 export default {
   plugin,
   roles: ["left", "right"],
+  fit: fitPair,
   legend,
-  parameters: (given) => ({ ...common(given), left: given.trial.shown.left?.sha256, right: given.trial.shown.right?.sha256 }),
+  parameters: common,
 } satisfies TrialModule;

@@ -9,13 +9,8 @@ import { type Pair, Stage } from "./stage.ts";
 
 const info = <const>{
   name: "two-alternative",
-  version: "1.2.0",
-  parameters: {
-    ...commonParameters,
-    /** Hashes of the two stimuli. */
-    left: { type: ParameterType.STRING, default: undefined },
-    right: { type: ParameterType.STRING, default: undefined },
-  },
+  version: "1.3.0",
+  parameters: commonParameters,
   data: {
     ...commonData,
     /** "left" or "right". */
@@ -68,7 +63,7 @@ export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
     };
     if (mode === "data-only") {
       onLoad?.();
-      const where = { scale: 1, css_width_px: (trial.width ?? 0) / devicePixelRatio, arrangement: "side", device_pixel_ratio: devicePixelRatio, viewport: [innerWidth, innerHeight] };
+      const where = { stimulus_size: [trial.width, trial.height], scale: 1, css_width_px: (trial.width ?? 0) / devicePixelRatio, arrangement: "side", device_pixel_ratio: devicePixelRatio, viewport: [innerWidth, innerHeight] };
       const data = { onset: performance.now(), input: "mouse", ...where, refresh_hz: null, hidden_ms: 0, min_visible_ms: made.rt, ...made };
       trial.on_choice?.(data);
       this.#jsPsych.finishTrial(data);

@@ -2,9 +2,9 @@
 import type { TrialType } from "jspsych";
 import { h } from "../../../shared/dom.ts";
 import type { Rules } from "../../inputs/guard.ts";
-import { fitPair, type Layout } from "../../layout.ts";
+import { fitPair, type Layout, type Offered } from "../../layout.ts";
 import type { Picture } from "../../stimuli.ts";
-import { roomWithin, shownAt, toWholePixels } from "../shared/place.ts";
+import { roomWithin, showAt, shownAt, toWholePixels } from "../shared/place.ts";
 import { Player, played } from "../shared/player.ts";
 import { Taking } from "../shared/taking.ts";
 import { words } from "../../words/index.ts";
@@ -40,12 +40,13 @@ export class Stage {
     this.#pair = pair;
     const surface = (picture: Picture) => {
       if (picture.kind === "still") return { element: picture.image, context: null };
-      const canvas = h("canvas", { width: trial.width, height: trial.height });
+      const [width, height] = picture.pixels;
+      const canvas = h("canvas", { width, height });
       return { element: canvas, context: canvas.getContext("2d", { alpha: false }) };
     };
     const [left, right] = [surface(pair.left), surface(pair.right)];
     const button = (side: Side, label: string, picture: HTMLElement) =>
-      h("button", { type: "button", class: "picture", "aria-label": label, "data-testid": `choice-${side}`, "data-sha256": trial[side] }, picture);
+      h("button", { type: "button", class: "picture", "aria-label": label, "data-testid": `choice-${side}`, "data-sha256": pair[side].sha256 }, picture);
     this.#buttons = { left: button("left", words("choice-left"), left.element), right: button("right", words("choice-right"), right.element) };
     this.#paint = { left: left.context, right: right.context };
     this.#heading = h("h1", { tabindex: -1 }, trial.question);
@@ -56,7 +57,7 @@ export class Stage {
     this.#layout = this.#fit();
     this.taking = new Taking({
       ...{ root: this.#root, buttons: this.#buttons, keys: () => KEYS[this.#layout.arrangement], geometry: () => this.#shown() },
-      ...{ rules: trial.rules as Rules, simulated: trial.simulated === true },
+      ...{ pixels: pair.left.pixels, rules: trial.rules as Rules, simulated: trial.simulated === true },
     });
     addEventListener(
       "resize",
@@ -120,17 +121,13 @@ export class Stage {
     return { scale, css_width_px, arrangement: this.#layout.arrangement, ...display };
   }
 
-  /** Sizes and places the pictures in whole device pixels. */
+  /** Sizes and places the pictures in whole device pixels. They stay those that are there, however the window changes. */
   #fit(): Layout {
-    const { width, height } = this.#trial;
-    const layout = fitPair({ width, height, ...roomWithin(this.#root, this.#heading, this.#footer) });
+    const offered = { sizes: [this.#pair.left.pixels], fit: this.#trial.fit as Offered["fit"] };
+    const layout = fitPair(offered, roomWithin(this.#root, this.#heading, this.#footer));
     this.#box.classList.toggle("stack", layout.arrangement === "stack");
     this.#box.style.gap = `${layout.gap}px`;
-    for (const button of Object.values(this.#buttons)) {
-      const picture = button.firstElementChild as HTMLElement;
-      picture.style.width = `${layout.width}px`;
-      picture.style.height = `${layout.height}px`;
-    }
+    for (const button of Object.values(this.#buttons)) showAt(button.firstElementChild as HTMLElement, layout);
     toWholePixels(this.#box, this.#buttons.left);
     return layout;
   }

@@ -1,11 +1,13 @@
 /** Two pictures in one place, one after the other: which one? */
 import { common, type TrialModule } from "../module.ts";
+import { fitOne } from "../../layout.ts";
 import plugin from "./plugin.ts";
 import { refusal } from "./sequence.ts";
 
 export default {
   plugin,
   roles: ["first", "second"],
+  fit: fitOne,
   legend: {
     title: "kind-two-interval",
     how: { touch: "how-interval-touch", click: "how-interval-click" },
@@ -16,8 +18,6 @@ export default {
   },
   parameters: (given) => ({
     ...common(given),
-    first: given.trial.shown.first?.sha256,
-    second: given.trial.shown.second?.sha256,
     settings: given.trial.settings,
     surround: given.study.surround,
     trial_index: given.trial.trial_index,

@@ -10,17 +10,14 @@ import { type Intervals, Stage } from "./stage.ts";
 
 const info = <const>{
   name: "two-interval",
-  version: "1.1.0",
+  version: "1.2.0",
   parameters: {
     ...commonParameters,
-    /** Hashes of the two stimuli. */
-    first: { type: ParameterType.STRING, default: undefined },
-    second: { type: ParameterType.STRING, default: undefined },
     /** `fixation_ms`, `first_ms`, `mask_ms` and `second_ms`; no fixation and no mask where they are 0. */
     settings: { type: ParameterType.OBJECT, default: undefined },
     /** Linear luminance of the grey around the pictures, 0 to 1. */
     surround: { type: ParameterType.FLOAT, default: undefined },
-    /** With the hashes, what the mask is made from. */
+    /** With the stimuli's hashes, what the mask is made from. */
     trial_index: { type: ParameterType.INT, default: 0 },
   },
   data: {
@@ -105,7 +102,7 @@ export default class TwoIntervalPlugin implements JsPsychPlugin<Info> {
     const shown_frames = inFrames(requested_ms, FALLBACK_PERIOD_MS);
     const shown_ms = Object.fromEntries(STEPS.map((step) => [step, rounded(shown_frames[step] * FALLBACK_PERIOD_MS)])) as PerStep;
     return {
-      ...{ onset: performance.now(), input: "mouse", scale: 1, css_width_px: (trial.width ?? 0) / devicePixelRatio },
+      ...{ onset: performance.now(), input: "mouse", stimulus_size: [trial.width, trial.height], scale: 1, css_width_px: (trial.width ?? 0) / devicePixelRatio },
       ...{ device_pixel_ratio: devicePixelRatio, viewport: [innerWidth, innerHeight], refresh_hz: null, hidden_ms: 0 },
       ...{ min_visible_ms: Math.min(shown_ms.first, shown_ms.second), requested_ms, shown_frames, shown_ms, restarts: 0 },
     };

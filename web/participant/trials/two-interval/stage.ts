@@ -2,10 +2,10 @@
 import type { TrialType } from "jspsych";
 import { h } from "../../../shared/dom.ts";
 import type { Rules } from "../../inputs/guard.ts";
-import { fitOne, inkOn, type Size, srgbCode } from "../../layout.ts";
+import { fitOne, inkOn, type Offered, type Size, srgbCode } from "../../layout.ts";
 import type { Picture } from "../../stimuli.ts";
 import { visible } from "../shared/hidden.ts";
-import { roomWithin, shownAt, toWholePixels } from "../shared/place.ts";
+import { roomWithin, showAt, shownAt, toWholePixels } from "../shared/place.ts";
 import { Player, played } from "../shared/player.ts";
 import { Taking } from "../shared/taking.ts";
 import { type Plain, words } from "../../words/index.ts";
@@ -53,10 +53,11 @@ export class Stage {
   constructor(display: HTMLElement, trial: TrialType<Info>, pictures: Intervals) {
     this.#trial = trial;
     this.#pictures = pictures;
-    this.#canvas = h("canvas", { width: trial.width, height: trial.height, "aria-hidden": "true" });
+    const [width, height] = pictures.first.pixels;
+    this.#canvas = h("canvas", { width, height, "aria-hidden": "true" });
     this.#context = this.#canvas.getContext("2d", { alpha: false }) as CanvasRenderingContext2D;
     const button = (interval: Interval, label: string) =>
-      h("button", { type: "button", class: "action", "data-testid": `choice-${interval}`, "data-sha256": trial[interval] }, label);
+      h("button", { type: "button", class: "action", "data-testid": `choice-${interval}`, "data-sha256": pictures[interval].sha256 }, label);
     this.#buttons = { first: button("first", words("choice-first")), second: button("second", words("choice-second")) };
     this.#heading = h("h1", { tabindex: -1 }, trial.question);
     this.#footer = h("p", { class: "position", "aria-live": "polite" });
@@ -68,7 +69,7 @@ export class Stage {
     this.#size = this.#fit();
     this.taking = new Taking({
       ...{ root: this.#root, buttons: this.#buttons, keys: () => KEYS, geometry: () => shownAt(this.#size) },
-      ...{ rules: trial.rules as Rules, simulated: trial.simulated === true },
+      ...{ pixels: pictures.first.pixels, rules: trial.rules as Rules, simulated: trial.simulated === true },
     });
     addEventListener(
       "resize",
@@ -82,12 +83,13 @@ export class Stage {
 
   /** Decodes and draws beforehand. */
   async prepare(): Promise<void> {
-    const { width = 0, height = 0, surround = 0, trial_index = 0 } = this.#trial;
+    const { surround = 0, trial_index = 0 } = this.#trial;
+    const [width, height] = this.#pictures.first.pixels;
     for (const interval of INTERVALS) {
       const picture = this.#pictures[interval];
       if (picture.kind === "still") this.#bitmaps[interval] = await createImageBitmap(picture.image);
     }
-    const seed = seedOf(INTERVALS.map((interval) => this.#trial[interval] ?? ""), trial_index);
+    const seed = seedOf(INTERVALS.map((interval) => this.#pictures[interval].sha256), trial_index);
     this.#bitmaps.mask = await createImageBitmap(new ImageData(mask({ width, height, surround, seed }), width, height));
     // A bitmap's first drawing may have to carry it to the graphics card.
     const animated = INTERVALS.flatMap((interval) => {
@@ -187,12 +189,11 @@ export class Stage {
     this.#context.fillRect(x - half, y - arm, 2 * half, 2 * arm);
   }
 
-  /** Sizes and places the picture in whole device pixels. */
+  /** Sizes and places the picture in whole device pixels. It stays the one that is there, however the window changes. */
   #fit(): Size {
-    const { width, height } = this.#trial;
-    const size = fitOne({ width, height, ...roomWithin(this.#root, this.#heading, this.#footer) });
-    this.#canvas.style.width = `${size.width}px`;
-    this.#canvas.style.height = `${size.height}px`;
+    const offered = { sizes: [this.#pictures.first.pixels], fit: this.#trial.fit as Offered["fit"] };
+    const size = fitOne(offered, roomWithin(this.#root, this.#heading, this.#footer));
+    showAt(this.#canvas, size);
     toWholePixels(this.#box, this.#canvas);
     return size;
   }

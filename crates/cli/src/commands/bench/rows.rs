@@ -20,7 +20,7 @@ use kelir_store::{
 use kelir_study::analysis::{conditions_scale, summarise};
 use kelir_study::answers::Participant;
 use kelir_study::screening::screen;
-use kelir_study::trials::Role;
+use kelir_study::trials::{Checked, Role};
 use kelir_study::{StudyDefinition, Trial, TrialPlan};
 use serde::Serialize;
 
@@ -267,6 +267,7 @@ impl Served {
         let answers = trials.iter().map(|trial| answer(trial, &mut random)).collect::<Result<_>>()?;
         let filled = |trial: Trial| PlannedTrial {
             stimuli: trial.shown.keys().map(|role| (*role, self.picture.clone())).collect(),
+            larger: Vec::new(),
             trial,
         };
         let next = NextTrials { trials: trials.into_iter().map(filled).collect(), more };
@@ -301,7 +302,8 @@ fn answer(trial: &Trial, random: &mut Random) -> Result<NewAnswer> {
     let rules = trial.trial.rules();
     let sent = rules.simulate(random.bernoulli(p), rt_ms);
     let Ok(checked) = rules.check(&sent) else { bail!("trial {}: {sent} is no answer", trial.trial_index) };
-    Ok(NewAnswer { trial_index: trial.trial_index, answer: checked.answer, payload: sent.to_string() })
+    let Checked { answer, stimulus_size } = checked;
+    Ok(NewAnswer { trial_index: trial.trial_index, answer, payload: sent.to_string(), stimulus_size })
 }
 
 /// Refuses to draw: no picture is looked at here.

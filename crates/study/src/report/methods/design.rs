@@ -3,6 +3,7 @@
 use super::{Text, count};
 use crate::adaptive::{Adaptive, Track};
 use crate::definition::{Kind, StudyDefinition};
+use crate::display::Fit;
 use std::collections::BTreeMap;
 
 const LEVITT: &str = "Levitt, H. (1971). Transformed up-down methods in psychoacoustics. Journal of the Acoustical Society of America, 49(2B), 467–477.";
@@ -29,13 +30,13 @@ fn design(study: &StudyDefinition) -> String {
     } else {
         format!(" Of these, {} served to catch inattention and entered no analysis.", count(catch, "pair"))
     };
-    let [width, height] = study.size;
     format!(
-        "Participants saw {} of pictures of {width} × {height} pixels ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
+        "Participants saw {} of pictures of {} ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
          \"{}\" They had to choose one of the two pictures of each trial. {}{catch} Blocks came in a fixed order and items within a block in a \
          random one. Which of the two came first (on the left, above or earlier) was balanced within participants and, over participants, item by item (mirrored plans from the seed {}, given to \
          the lowest place in the design that no completed or active session held).",
         pairs(study),
+        sizes(study),
         kinds.join(", "),
         count(study.blocks.len(), "block"),
         study.surround,
@@ -43,6 +44,16 @@ fn design(study: &StudyDefinition) -> String {
         presentation(study),
         study.seed,
     )
+}
+
+/// In which sizes they were.
+fn sizes(study: &StudyDefinition) -> String {
+    let which = match (study.sizes(), study.fit()) {
+        ([_], _) => "",
+        (_, Fit::Fill) => ", whichever a window needed",
+        _ => ", whichever was the largest to fit a participant's window",
+    };
+    format!("{}{which}", study.sizes_in_words())
 }
 
 /// How many pairs of pictures participants saw.
