@@ -46,16 +46,13 @@ async function take({ name, viewport, touch, input, choices, reloadAfter }) {
       await shot(`trial-${trials.length + 1}`);
       const choice = choices[trials.length];
       trials.push({ choice, left, right });
-      // What comes before the pictures have been seen is ignored: it is pressed until the page goes on.
-      for (let gone = false; !gone; ) {
-        if (input === "keyboard") await page.keyboard.press(choice === "left" ? "ArrowLeft" : "ArrowRight");
-        else await press(page.getByTestId(`choice-${choice}`));
-        const others = ([l, r]) => {
-          const shown = document.querySelector('[data-testid="choice-left"]');
-          return !shown || shown.dataset.sha256 !== l || document.querySelector('[data-testid="choice-right"]')?.dataset.sha256 !== r;
-        };
-        gone = await page.waitForFunction(others, told, { timeout: 5000 }).then(() => true, () => false);
-      }
+      // What is offered counts: once is enough.
+      if (input === "keyboard") await page.keyboard.press(choice === "left" ? "ArrowLeft" : "ArrowRight");
+      else await press(page.getByTestId(`choice-${choice}`));
+      await page.waitForFunction(([l, r]) => {
+        const shown = document.querySelector('[data-testid="choice-left"]');
+        return !shown || shown.dataset.sha256 !== l || document.querySelector('[data-testid="choice-right"]')?.dataset.sha256 !== r;
+      }, told);
       if (trials.length === reloadAfter) await page.reload();
     } else if (state === "completion-code") {
       await shot("thanks");

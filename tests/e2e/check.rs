@@ -66,8 +66,10 @@ fn pictures_that_could_not_be_shown_are_named_with_what_is_wrong() {
 fn a_redirect_holds_the_code_and_nothing_that_is_never_filled_in() {
     let data = small_data();
     let good = "https://example.org/?cc=[CODE]&who=[PROLIFIC_PID]";
+    edit(data.path(), "studies/small.toml", "seed = 3", "edition = 2\nseed = 3");
     for (address, phrases) in [
         ("https://example.org/done", &["[CODE]"][..]),
+        ("https://example.org/?who=[PROLIFIC_PID]", &["[CODE]"]),
         ("https://example.org/?cc=[CODE]&who=[PROLIFIC_ID]", &["[PROLIFIC_ID]", "[PROLIFIC_PID]"]),
         ("https://example.org/?cc=[CODE", &["stands alone"]),
         ("https://example.org/?cc=CODE]", &["stands alone", "]"]),
@@ -80,10 +82,47 @@ fn a_redirect_holds_the_code_and_nothing_that_is_never_filled_in() {
         phrases.iter().for_each(|phrase| assert!(said.contains(phrase), "no {phrase:?} in\n{said}"));
         edit(data.path(), "studies/small.toml", address, good);
     }
+    let checked = || kelir_ok(&["study", "check", data.path().join("studies/small.toml").to_str().unwrap()]);
+    // SONA credits by its own survey code, which its links call `survey_code` or `id`.
+    for name in ["survey_code", "id"] {
+        let sona = format!("https://x.sona-systems.com/webstudy_credit.aspx?survey_code=[{name}]");
+        edit(data.path(), "studies/small.toml", good, &sona);
+        assert!(checked().contains(": good ("));
+        edit(data.path(), "studies/small.toml", &sona, good);
+    }
     // What the study lists is filled in, and a code may stand in the address itself.
     edit(data.path(), "studies/small.toml", good, "https://example.org/?cc=C1&room=[room]\"\ncode = \"C1");
     edit(data.path(), "studies/small.toml", "[texts]", "[session]\nparams = [\"room\"]\n[texts]");
-    kelir_ok(&["study", "check", data.path().join("studies/small.toml").to_str().unwrap()]);
+    assert!(checked().contains(": good ("));
+}
+
+#[test]
+fn a_study_of_the_first_edition_runs_on_with_the_redirect_it_has_and_is_warned_of() {
+    let data = small_data();
+    let good = "https://example.org/?cc=[CODE]&who=[PROLIFIC_PID]";
+    let file = data.path().join("studies/small.toml");
+    let check = |more: &[&str]| kelir_ok(&[&["study", "check", file.to_str().unwrap()], more].concat());
+    for (address, phrase) in [
+        ("https://example.org/done", "must hold [CODE]"),
+        ("https://example.org/?cc=[CODE]&who=[who]", "[who] is filled in only where"),
+        ("https://example.org/?cc=[CODE", "stands alone"),
+    ] {
+        edit(data.path(), "studies/small.toml", good, address);
+        let said = check(&[]);
+        assert!(!said.contains(": good ("), "{said}");
+        for phrase in ["warning: ", "completion.redirect", address, phrase] {
+            assert!(said.contains(phrase), "no {phrase:?} in\n{said}");
+        }
+        let told: Value = serde_json::from_str(&check(&["--json"])).unwrap();
+        assert_eq!(told[0]["warnings"][0]["field"], "completion.redirect", "{told}");
+        edit(data.path(), "studies/small.toml", address, good);
+    }
+    edit(data.path(), "studies/small.toml", good, "https://example.org/?who=[who]");
+    let server = Server::start_small(data.path());
+    let studies = server.research(&server.sign_in(), "/api/v1/studies");
+    let small = studies["items"].as_array().unwrap().iter().find(|study| study["id"] == "small").unwrap();
+    assert_eq!(small["status"], "ready");
+    assert_eq!(small["warnings"].as_array().unwrap().len(), 2, "{small}");
 }
 
 #[test]
@@ -106,7 +145,7 @@ fn what_cannot_be_drawn_is_found_by_drawing_it_small() {
 #[test]
 fn every_problem_stands_in_one_list_and_as_json() {
     let data = small_data();
-    edit(data.path(), "studies/small.toml", "seed = 3", "seed = -3");
+    edit(data.path(), "studies/small.toml", "seed = 3", "edition = 2\nseed = -3");
     edit(data.path(), "studies/small.toml", "spp = 16", "spp = 0");
     edit(data.path(), "studies/small.toml", "&who=[PROLIFIC_PID]", "&who=[nobody]");
     edit(data.path(), "scenes/far.toml", "height_m = 0.9", "height_m = -0.9");

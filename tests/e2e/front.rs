@@ -2,10 +2,11 @@
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use kelir_tests::{Server, Taking, binary, small_data, sql};
+use kelir_tests::{Server, Taking, binary, edit, small_data, sql};
 use serde_json::{Value, json};
 
 /// Connections that say nothing, or not enough.
@@ -153,6 +154,39 @@ fn the_log_says_what_was_asked_and_nobodys_secrets() {
     for secret in [id, token, "5f0asecret", "not the password"] {
         assert!(!log.contains(secret), "{secret} in\n{log}");
     }
+}
+
+#[test]
+fn a_terminal_gets_links_and_warnings_and_a_file_all_that_is_logged() {
+    let (data, port) = (small_data(), free_port());
+    edit(data.path(), "studies/small.toml", "cc=[CODE]", "cc=");
+    let (folder, pid) = (data.path().display(), data.path().join("pid"));
+    let serve = format!(
+        "echo $$ > {}; unset KELIR_LOG; exec {} serve --listen 127.0.0.1:{port} --data {folder}",
+        pid.display(),
+        binary().display()
+    );
+    let mut terminal = Command::new("script");
+    terminal.args(["-qec", &serve, "/dev/null"]).stdin(Stdio::null()).stdout(Stdio::piped());
+    let mut terminal = terminal.spawn().unwrap();
+    can_be_taken(port);
+    let server = std::fs::read_to_string(pid).unwrap();
+    assert!(Command::new("kill").arg(server.trim()).status().unwrap().success());
+    let mut seen = String::new();
+    terminal.stdout.take().unwrap().read_to_string(&mut seen).unwrap();
+    assert!(terminal.wait().unwrap().success(), "{seen}");
+    let (kept, link) = (format!("{folder}/server.log"), format!(":{port}/study/small"));
+    for said in [link.as_str(), &kept, "completion.redirect"] {
+        assert!(seen.contains(said), "{said} in\n{seen}");
+    }
+    assert!(!seen.contains("kelir::access") && !seen.contains("started"), "{seen}");
+    let log = std::fs::read_to_string(&kept).unwrap();
+    for said in
+        ["kelir::access: method=POST", "a sign-in failed", "started", "completion.redirect", "stopped"]
+    {
+        assert!(log.contains(said), "{said} in\n{log}");
+    }
+    assert_eq!(std::fs::metadata(&kept).unwrap().permissions().mode() & 0o777, 0o600);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 4e863320f05a3df139dfd53b0a75a04f80c47dc392656720590dec69e024d6d8 b7089c0762b07622d93e56f1ae89c3c381f3473601e1fb749d95f8018add7cb1
+// Generated from openapi.json by `npm run types`; do not edit. 8c296b101fc062225f9f83b5d5d70a6414cb37631f4e15bbc6277a7b6a395243 71b04b85b4a9c12b2b1ab6f9d00917b06b1f07377ad21f3bbb5084eea1699391
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -2643,6 +2643,8 @@ export interface components {
             title: string;
             /** @description The version that is served; null while its stimuli are not all made. */
             version: string | null;
+            /** @description What may be a mistake in its file, and is served all the same. */
+            warnings: string[];
         };
         /** @description A version of a study: what was asked and what was shown. */
         StudyVersion: {

@@ -32,12 +32,12 @@ async function ask<T extends object>(path: string, fields: readonly (keyof T & s
 
 export const fetchStudy = (study: string) => ask<Study>(`${v1}/studies/${encodeURIComponent(study)}`, ["id", "texts", "trial_kinds"]);
 
-/** Begins a session; asked again with the same key, the server knows that it is the same one. */
 /** What a link makes of a visit. */
 export type VisitKind = Schemas["VisitKind"]["visit"];
 
 export const fetchVisit = (study: string, search: string) => request<Schemas["VisitKind"]>(`${v1}/studies/${encodeURIComponent(study)}/visit${search}`);
 
+/** Begins a session; asked again with the same key, the server knows that it is the same one. */
 export const createSession = (study: string, body: Schemas["NewSession"], key: string) =>
   ask<Schemas["CreatedSession"]>(`${v1}/studies/${encodeURIComponent(study)}/sessions`, ["session_id", "token"], { method: "POST", body, headers: { "idempotency-key": key } });
 

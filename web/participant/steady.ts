@@ -17,8 +17,11 @@ export function steady(clock: () => number): { now(): number; atLeast(time: numb
   return { now, atLeast };
 }
 
-if (typeof window !== "undefined") {
-  const { now, atLeast } = steady(performance.now.bind(performance));
-  performance.now = now;
-  requestAnimationFrame(atLeast);
+const page = typeof window === "undefined" ? null : steady(performance.now.bind(performance));
+if (page !== null) {
+  performance.now = page.now;
+  requestAnimationFrame(page.atLeast);
 }
+
+/** A frame has this time: the page's clock is not behind it from now on. */
+export const frameAt = (time: number) => page?.atLeast(time);

@@ -95,6 +95,7 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
           .catch((error: unknown) => {
             wanted.delete(ref.sha256);
             progress.of -= 1;
+            onBytes(0);
             reject(error);
           })
           .finally(() => {
@@ -107,6 +108,7 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
     const entry: Wanted = { ref, trial, state: "waiting", bytes, begin };
     wanted.set(ref.sha256, entry);
     progress.of += 1;
+    onBytes(0);
     return entry;
   };
 

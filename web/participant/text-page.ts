@@ -37,7 +37,7 @@ export default class TextPagePlugin implements JsPsychPlugin<Info> {
     showPage(display, trial.heading, trial.content() as Node[], button);
     onLoad?.();
     const rules = trial.rules as Rules;
-    offered([button], () => inputs.gapLeft(rules));
+    offered([button], () => inputs.wait(rules, button));
     let pressed = false;
     return new Promise((resolve, reject) => {
       button.addEventListener("click", async (event) => {

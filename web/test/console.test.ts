@@ -60,10 +60,11 @@ test("provenance is believed only where it is what it should be", () => {
 
 test("a study's readiness is said in words", () => {
   const row: StudySummary = {
-    ...{ id: "s", title: "S", version: null, file_hash: "0", status: "ready", progress: null, reason: null, most_trials: 1 },
+    ...{ id: "s", title: "S", version: null, file_hash: "0", status: "ready", progress: null, reason: null, warnings: [], most_trials: 1 },
     participants: { started: 0, in_progress: 0, completed: 0 },
   };
   assert.equal(statusText(row), null);
+  assert.match(statusText({ ...row, warnings: ["completion.redirect: must hold [CODE]"] }) ?? "", /can come.*must hold \[CODE\]/);
   assert.match(statusText({ ...row, status: "preparing", progress: { done: 3, total: 10, stimulus: "x" } }) ?? "", /3 of 10 ready/);
   assert.match(statusText({ ...row, status: "preparing" }) ?? "", /being made\./);
   assert.match(statusText({ ...row, status: "failed", reason: "no such scene" }) ?? "", /no such scene/);

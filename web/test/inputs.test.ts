@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { InputGuard, type Press, type Rules } from "../participant/inputs/guard.ts";
+import { InputGuard, type Press, QuickPresses, type Rules } from "../participant/inputs/guard.ts";
 import { Inputs } from "../participant/inputs/watch.ts";
 
 const EDITION_2: Rules = { min_visible_ms: 200, min_gap_ms: 500 };
@@ -42,6 +42,15 @@ test("the second click of a double click, and what a script makes, never count",
     assert.equal(tap(guard, "mouse:1", 9000, rules, { trusted: false }), "untrusted");
     assert.equal(tap(guard, "mouse:1", 9500, rules), null);
   }
+});
+
+test("quick touches at one place are a series, as a mouse's clicks are; later or elsewhere another begins", () => {
+  const quick = new QuickPresses();
+  const counts = [[1000, 100], [1180, 110], [1660, 90], [2160, 90], [2400, 145], [2500, 300], [2600, 300]].map(([at = 0, x = 0]) => quick.count(at, x, 50));
+  assert.deepEqual(counts, [1, 2, 3, 1, 1, 1, 2]);
+  const box = (left: number) => ({ left, right: left + 100, top: 0, bottom: 100 });
+  assert.deepEqual([box(250), box(350), box(351)].map((at) => quick.left(2700, at)), [400, 400, 0]);
+  assert.deepEqual([3099, 3100, 9000].map((at) => quick.left(at, box(250))), [1, 0, 0]);
 });
 
 test("a key that is held answers once, whatever its repeats look like", () => {

@@ -13,12 +13,12 @@ export const versions = { current: hash("c0ffee00"), before: hash("beef0123"), p
 const people = (started: number, in_progress: number, completed: number): Schemas["Participants"] => ({ started, in_progress, completed });
 const studies: Schemas["StudySummary"][] = [
   {
-    ...{ id: study.id, title: study.title, version: versions.current, file_hash: hash("f11e"), status: "ready", progress: null, reason: null },
+    ...{ id: study.id, title: study.title, version: versions.current, file_hash: hash("f11e"), status: "ready", progress: null, reason: null, warnings: [] },
     ...{ most_trials: 5, participants: people(36, 2, 32) },
   },
   {
     ...{ id: "empty", title: "A study that nobody has taken", version: null, file_hash: hash("0"), status: "preparing", most_trials: 3, participants: people(0, 0, 0) },
-    ...{ progress: { done: 3, total: 10, stimulus: "still-arjuna (mc)" }, reason: null },
+    ...{ progress: { done: 3, total: 10, stimulus: "still-arjuna (mc)" }, reason: null, warnings: [] },
   },
 ];
 

@@ -57,6 +57,8 @@ export interface Options {
   shownAs?: Study["display"];
   /** Each visit is somebody else's. */
   perVisit?: boolean;
+  /** What a link makes of a visit that asks to be another than a participant's. */
+  visitKind?: Schemas["VisitKind"]["visit"];
   /** Texts in place of the study's, in every language. */
   texts?: Partial<Study["texts"]>;
 }
@@ -66,7 +68,7 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, shownAs = study.display, perVisit = false, spoil = "", texts = {} }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, shownAs = study.display, perVisit = false, spoil = "", texts = {}, visitKind = "participant" }: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
@@ -139,15 +141,19 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     if (method === "GET" && path === `/api/v1/studies/${study.id}`) {
       return [200, found()];
     }
+    if (method === "GET" && path === `/api/v1/studies/${study.id}/visit`) {
+      const kind: Schemas["VisitKind"] = { visit: visitKind };
+      return [200, kind];
+    }
     if (method === "POST" && path === `/api/v1/studies/${study.id}/sessions`) {
       const same = key === undefined ? undefined : [...sessions.values()].find((other) => other.key === key && !other.consented);
-      const s: Session = same ?? { id: randomUUID(), token: randomUUID(), key, consented: false, answers: new Map(), code: null, body: body as Session["body"] };
+      const s: Session = same ?? { id: `${visitKind === "preview" ? "preview-" : ""}${randomUUID()}`, token: randomUUID(), key, consented: false, answers: new Map(), code: null, body: body as Session["body"] };
       s.token = randomUUID();
       sessions.set(s.id, s);
       const created: Schemas["CreatedSession"] = { ...state(s), token: s.token };
       return [201, created];
     }
-    const [, id, rest = ""] = path.match(/^\/api\/v1\/sessions\/([^/]+)(\/.*)?$/) ?? [];
+    const [, id, rest = ""] = path.match(/^\/api\/v1\/(?:sessions|previews)\/([^/]+)(\/.*)?$/) ?? [];
     if (id !== undefined) {
       const s = sessions.get(id);
       if (s === undefined || token !== s.token) return problem(401, "unauthorized", "This session is not known here.");

@@ -152,22 +152,28 @@ impl App {
         }
     }
 
-    /// What a session began with.
-    pub(crate) async fn begun(&self, session: &Session) -> Result<Begun, Box<Problem>> {
+    /// What a session began with, where it is in memory.
+    pub(crate) fn begun_here(&self, session: &Session) -> Option<Begun> {
         if let Some(loaded) = self.studies.get(&session.study_id)
             && let Stimuli::Ready(served) = loaded.stimuli()
             && (&loaded.file_hash, &served.version) == (&session.file_hash, &session.version)
         {
-            return Ok(Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() });
+            return Some(Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() });
         }
         let key = [&session.study_id, &session.file_hash, &session.version].map(String::clone);
-        if let Some(begun) = self.begun.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
-            return Ok(begun.clone());
+        self.begun.read().unwrap_or_else(PoisonError::into_inner).get(&key).cloned()
+    }
+
+    /// What a session began with.
+    pub(crate) async fn begun(&self, session: &Session) -> Result<Begun, Box<Problem>> {
+        if let Some(begun) = self.begun_here(session) {
+            return Ok(begun);
         }
         let study = self.store.study_file(&session.study_id, &session.file_hash).await?;
         let study = study.ok_or_else(|| Problem::internal("a session's study file is not stored"))?;
         let stimuli = self.store.version_stimuli(&session.study_id, &session.version).await?;
         let begun = Begun { study: Arc::new(study), stimuli: Arc::new(stimuli.into_iter().collect()) };
+        let key = [&session.study_id, &session.file_hash, &session.version].map(String::clone);
         self.begun.write().unwrap_or_else(PoisonError::into_inner).insert(key, begun.clone());
         Ok(begun)
     }

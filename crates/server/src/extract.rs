@@ -171,23 +171,45 @@ pub(crate) fn cookie<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> 
         .find_map(|pair| pair.trim().split_once('=').filter(|(key, _)| *key == name).map(|(_, value)| value))
 }
 
-/// The session that `{session}` of the address names, for who holds its token. An unknown session and a wrong token look the same.
+/// What a participant's request holds: the `{session}` of its address and the hash of its token.
+pub(crate) struct Claim {
+    pub(crate) session_id: String,
+    token_hash: String,
+}
+
+impl Claim {
+    /// The session, if the token is its own. An unknown session and a wrong token look the same.
+    pub(crate) fn admit(&self, session: Option<Session>) -> Result<Session, Box<Problem>> {
+        // Hashes of secrets: how long comparing takes says nothing about the secret.
+        session.filter(|session| session.token_hash == self.token_hash).ok_or_else(unknown_session)
+    }
+}
+
+fn unknown_session() -> Box<Problem> {
+    Problem::new(ProblemCode::Unauthorized, "This session is not known, or the token is not its own.")
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Claim {
+    type Rejection = Box<Problem>;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Box<Problem>> {
+        let token_hash = sha256_hex(bearer(&parts.headers).ok_or_else(unknown_session)?.as_bytes());
+        let address = RawPathParams::from_request_parts(parts, state).await;
+        let address = address.map_err(|_| Problem::not_found("address"))?;
+        let id = address.iter().find_map(|(name, value)| (name == "session").then_some(value));
+        Ok(Claim { session_id: id.ok_or_else(unknown_session)?.to_owned(), token_hash })
+    }
+}
+
+/// The session that `{session}` of the address names, for who holds its token.
 pub(crate) struct Participant(pub(crate) Session);
 
 impl FromRequestParts<Arc<App>> for Participant {
     type Rejection = Box<Problem>;
 
     async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Box<Problem>> {
-        let unknown = || {
-            Problem::new(ProblemCode::Unauthorized, "This session is not known, or the token is not its own.")
-        };
-        let token_hash = sha256_hex(bearer(&parts.headers).ok_or_else(unknown)?.as_bytes());
-        let address = RawPathParams::from_request_parts(parts, app).await;
-        let address = address.map_err(|_| Problem::not_found("address"))?;
-        let id = address.iter().find_map(|(name, value)| (name == "session").then_some(value));
-        let session = app.store.session(id.ok_or_else(unknown)?).await?.ok_or_else(unknown)?;
-        // Hashes of secrets: how long comparing takes says nothing about the secret.
-        if session.token_hash == token_hash { Ok(Participant(session)) } else { Err(unknown()) }
+        let claim = Claim::from_request_parts(parts, app).await?;
+        claim.admit(app.store.session(&claim.session_id).await?).map(Participant)
     }
 }
 

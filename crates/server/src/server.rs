@@ -12,6 +12,7 @@ use crate::proxies::TrustedProxies;
 use crate::{integrity, routes, starting};
 use axum::Router;
 use kelir_store::Store;
+use kelir_study::StudyDefinition;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -71,6 +72,9 @@ impl Server {
             }
         }
         for study in &studies {
+            for warning in warnings(study) {
+                tracing::warn!(target: AUDIT, study = study.id, "is served, and may have a mistake: {warning}");
+            }
             store.put_study_file(study).await?;
         }
         let links = Links::open(&config.data).map_err(StartError::LinkKey)?;
@@ -169,6 +173,12 @@ impl Server {
     pub fn password_source(&self) -> &PasswordSource {
         &self.password
     }
+}
+
+/// What may be a mistake in a study's file.
+pub(crate) fn warnings(study: &StudyDefinition) -> Vec<String> {
+    let warnings = study.warnings(&format!("studies/{}.toml", study.id));
+    warnings.iter().map(ToString::to_string).collect()
 }
 
 /// Notes that a study cannot be taken, and why.

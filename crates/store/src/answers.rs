@@ -5,7 +5,7 @@ use crate::error::StoreError;
 use crate::files::sha256_hex;
 use crate::first_chain::{self, GENESIS};
 use crate::plans::{PlannedTrial, decided, insert_trials, next_trial, trial};
-use crate::sessions::Session;
+use crate::sessions::{Session, session};
 use crate::sqlite::Store;
 use crate::writer::Refused;
 use kelir_study::trials::{Checked, Role};
@@ -33,6 +33,8 @@ pub struct NewAnswer {
 /// What a page sent of one trial.
 #[derive(Clone, Debug)]
 pub struct SentAnswer {
+    /// Session's id.
+    pub session_id: String,
     /// Index of the trial in its session.
     pub trial_index: u32,
     /// All of it, to the byte.
@@ -44,6 +46,8 @@ pub struct SentAnswer {
 /// What came of an answer, and where its session stands then.
 #[derive(Clone, Debug)]
 pub struct Taken {
+    /// The session as it was.
+    pub session: Session,
     /// Whether it is stored.
     pub appended: Appended,
     /// The first decided trial without an answer.
@@ -151,26 +155,32 @@ impl Store {
         next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Appended, E> {
         let NewAnswer { trial_index, answer, payload, stimulus_size } = new.clone();
-        let sent = SentAnswer { trial_index, payload, known: None };
-        Ok(self
-            .take_answer(session, sent, move |_| Ok(Checked { answer, stimulus_size }), next)
-            .await?
-            .appended)
+        let sent = SentAnswer { session_id: session.session_id.clone(), trial_index, payload, known: None };
+        let admit = |session: Option<Session>| {
+            Ok(session.ok_or_else(|| StoreError::corrupt("session", "is not stored"))?)
+        };
+        let next = |_: &Session, progress| next(progress);
+        let check = move |_: &kelir_study::Trial| Ok(Checked { answer, stimulus_size });
+        Ok(self.take_answer(sent, admit, check, next).await?.appended)
     }
 
-    /// Takes what a page sent, all in one transaction: `check` says what the answer to the trial is, [`Store::append_answer`] has the rest.
+    /// Takes what a page sent, all in one transaction: `admit` says whose session it is, `check` what the answer to the trial is,
+    /// [`Store::append_answer`] has the rest.
     ///
     /// # Errors
-    /// The database fails, or `check` or `next` does; nothing is stored.
+    /// The database fails, or `admit`, `check` or `next` does; nothing is stored.
     pub async fn take_answer<E: From<StoreError> + Send + 'static>(
         &self,
-        session: &Session,
         sent: SentAnswer,
+        admit: impl FnOnce(Option<Session>) -> Result<Session, E> + Send + 'static,
         check: impl FnOnce(&kelir_study::Trial) -> Result<Checked, E> + Send + 'static,
-        next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
+        next: impl FnOnce(&Session, Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Taken, E> {
-        let session = session.clone();
-        self.write_or(move |writer| take(writer, &session, sent, check, next)).await
+        self.write_or(move |writer| {
+            let session = admit(session(writer, &sent.session_id)?).map_err(Refused::Caller)?;
+            take(writer, session, sent, check, next)
+        })
+        .await
     }
 
     /// All answers to these versions of a study, in the order they came.
@@ -203,60 +213,54 @@ impl Store {
 
 fn take<E>(
     writer: &Connection,
-    session: &Session,
+    session: Session,
     sent: SentAnswer,
     check: impl FnOnce(&kelir_study::Trial) -> Result<Checked, E>,
-    next: impl FnOnce(Progress) -> Result<NextTrials, E>,
+    next: impl FnOnce(&Session, Progress) -> Result<NextTrials, E>,
 ) -> Result<Taken, Refused<E>> {
-    let SentAnswer { trial_index, payload, known } = sent;
-    let session_id = &session.session_id;
-    let Some(planned) = trial(writer, session_id, trial_index)? else {
-        let appended = Appended::NoSuchTrial;
-        return Ok(Taken { appended, next_trial: None, more: false, trials: vec![], answered: vec![] });
+    let SentAnswer { trial_index, payload, known, .. } = sent;
+    let Some(planned) = trial(writer, &session.session_id, trial_index)? else {
+        let (appended, more) = (Appended::NoSuchTrial, session.more);
+        return Ok(Taken { session, appended, next_trial: None, more, trials: vec![], answered: vec![] });
     };
     let Checked { answer, stimulus_size } = check(&planned.trial).map_err(Refused::Caller)?;
     let new = NewAnswer { trial_index, answer, payload, stimulus_size };
-    let appended = append(writer, session, &planned, &new, next)?;
+    let (appended, more) = append(writer, &session, &planned, &new, next)?;
     let (mut trials, mut answered) = (Vec::new(), Vec::new());
     if let Some(known) = known {
-        trials = decided(writer, session_id, known)?;
-        answered = crate::sessions::answered(writer, session_id)?;
+        trials = decided(writer, &session.session_id, known)?;
+        answered = crate::sessions::answered(writer, &session.session_id)?;
     }
-    let (next_trial, more) = (next_trial(writer, session_id)?, more(writer, session_id)?);
-    Ok(Taken { appended, next_trial, more, trials, answered })
+    let next_trial = next_trial(writer, &session.session_id)?;
+    Ok(Taken { session, appended, next_trial, more, trials, answered })
 }
 
+/// What came of an answer, and whether answers will decide more trials then.
 fn append<E>(
     writer: &Connection,
     session: &Session,
     planned: &PlannedTrial,
     new: &NewAnswer,
-    next: impl FnOnce(Progress) -> Result<NextTrials, E>,
-) -> Result<Appended, Refused<E>> {
+    next: impl FnOnce(&Session, Progress) -> Result<NextTrials, E>,
+) -> Result<(Appended, bool), Refused<E>> {
     if let Some(stored) = stored(writer, &session.session_id, new)? {
-        return Ok(stored);
+        return Ok((stored, session.more));
     }
     let mut chain = Head::read(writer, &session.study_id)?;
     let now = clock::now();
     chain.append(writer, session, planned, new, &now)?;
-    let mut more = more(writer, &session.session_id)?;
+    let mut more = session.more;
     if more {
         let trials = decided(writer, &session.session_id, 0)?;
         let answers = answers_of(writer, &session.session_id)?;
-        let next = next(Progress { answers, trials }).map_err(Refused::Caller)?;
+        let next = next(session, Progress { answers, trials }).map_err(Refused::Caller)?;
         insert_trials(writer, &session.session_id, &next.trials, &now, chain.seq)?;
         more = next.more;
     }
     let mut seen =
         writer.prepare_cached("UPDATE sessions SET last_seen_at = ?2, more = ?3 WHERE session_id = ?1")?;
     seen.execute(params![session.session_id, now, more])?;
-    Ok(Appended::Stored)
-}
-
-/// Whether answers will decide more trials of this session.
-fn more(writer: &Connection, session_id: &str) -> Result<bool, StoreError> {
-    let mut query = writer.prepare_cached("SELECT more FROM sessions WHERE session_id = ?1")?;
-    Ok(query.query_row([session_id], |row| row.get(0))?)
+    Ok((Appended::Stored, more))
 }
 
 /// What stands where `new` would go, if anything does.

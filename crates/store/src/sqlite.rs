@@ -101,6 +101,11 @@ fn connect(path: &Path) -> Result<Connection, StoreError> {
     connection.pragma_update(None, "synchronous", "full")?;
     connection.pragma_update(None, "foreign_keys", true)?;
     connection.pragma_update(None, "recursive_triggers", true)?;
+    // What answers touch stays in memory (in KiB), and a page that many of them touch is copied out of the log once for all (in pages).
+    connection.pragma_update(None, "cache_size", -65_536)?;
+    // What a savepoint would undo stays there too: as a file it took more writes than the log.
+    connection.pragma_update(None, "temp_store", "memory")?;
+    connection.pragma_update(None, "wal_autocheckpoint", 4_000)?;
     // More statements than the store has.
     connection.set_prepared_statement_cache_capacity(128);
     Ok(connection)

@@ -87,6 +87,9 @@ pub const PANEL_PARAMS: [&str; 10] = [
     "id",
 ];
 
+/// Those by which a panel credits who comes back, without a code of ours: SONA's survey code under its usual names, MTurk's assignment.
+pub(crate) const CREDITING_PARAMS: [&str; 4] = ["survey_code", "id", "subject_id", "assignmentId"];
+
 /// What participants read; each text is a list of plain paragraphs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Texts {

@@ -30,7 +30,7 @@ impl<'a> Gatherer<'a> {
 }
 
 /// A message stays one line, however long the value is.
-fn shorten(value: &Value) -> String {
+pub(crate) fn shorten(value: &Value) -> String {
     let text = value.to_string().replace('\n', "\\n");
     if text.chars().count() <= 80 { text } else { text.chars().take(77).chain("...".chars()).collect() }
 }

@@ -96,7 +96,7 @@ fn read_study(gatherer: &Gatherer<'_>, file: &str, table: &Table) -> Option<Stud
         .or_else(|| fields_default(table, "edition", 1));
     let response = ResponseRules::read(gatherer, &mut fields);
     let session = SessionRules::read(gatherer, &mut fields);
-    let completion = completion::read(gatherer, &mut fields, session.as_ref());
+    let completion = completion::read(gatherer, &mut fields, session.as_ref(), edition);
     let screening = read_screening(gatherer, &mut fields);
     let texts = read_texts(gatherer, &mut fields);
     let language = languages::read_language(&mut fields);

@@ -37,6 +37,30 @@ const FORGOTTEN_MS = 2500;
 /** Repeats that come as pairs of down and up are one long press: the same key counts again after half the gap without a sign of it, or this, ms. */
 const QUIET_MS = 150;
 
+/** A double touch: so soon after the one before, as a double click may be on Windows and in Chromium, ms, and within a finger's width of it, CSS px. */
+const DOUBLE_MS = 500;
+const DOUBLE_PX = 50;
+
+/** Counts quick presses at one place, as a click's `detail` does: all browsers count a mouse's, and only Chromium a finger's. */
+export class QuickPresses {
+  #last = { at: Number.NEGATIVE_INFINITY, x: 0, y: 0, count: 0 };
+
+  /** The how-many-eth of its series a press is. */
+  count(at: number, x: number, y: number): number {
+    const last = this.#last;
+    const again = at - last.at < DOUBLE_MS && Math.hypot(x - last.x, y - last.y) <= DOUBLE_PX;
+    this.#last = { at, x, y, count: again ? last.count + 1 : 1 };
+    return this.#last.count;
+  }
+
+  /** How long a press within a box would still be a double one, ms. */
+  left(at: number, { left, right, top, bottom }: Pick<DOMRect, "left" | "right" | "top" | "bottom">): number {
+    const { x, y } = this.#last;
+    const away = Math.hypot(Math.max(left - x, 0, x - right), Math.max(top - y, 0, y - bottom));
+    return away <= DOUBLE_PX ? Math.max(0, this.#last.at + DOUBLE_MS - at) : 0;
+  }
+}
+
 /** What has been pressed, let go and counted, on all pages. */
 export class InputGuard {
   readonly #held = new Map<string, number>();

@@ -1,14 +1,21 @@
-/** Buttons say that they can't be pressed yet for as long as a press would not count. */
+/** Buttons say that they can't be pressed for as long as a press would not count. */
 
-/** Marks `buttons` until `wait` (ms) is over. What counts is judged where it is pressed; this only tells of it. */
-export function offered(buttons: readonly HTMLButtonElement[], wait: () => number, signal?: AbortSignal): void {
+/** Says whether `buttons` can be pressed. */
+export function offer(buttons: readonly HTMLButtonElement[], can: boolean): void {
+  for (const button of buttons) {
+    if (can) button.removeAttribute("aria-disabled");
+    else button.setAttribute("aria-disabled", "true");
+  }
+}
+
+/** Offers each of `buttons` once its `wait` (ms) is over, unless `signal` aborts before. What counts is judged where it is pressed; this only tells of it. */
+export function offered(buttons: readonly HTMLButtonElement[], wait: (button: HTMLButtonElement) => number, signal?: AbortSignal): void {
   const look = () => {
-    const left = signal?.aborted === true ? 0 : wait();
-    for (const button of buttons) {
-      if (left > 0) button.setAttribute("aria-disabled", "true");
-      else button.removeAttribute("aria-disabled");
-    }
-    if (left > 0) setTimeout(look, Math.max(1, Math.ceil(left)));
+    if (signal?.aborted === true) return;
+    const waits = buttons.map((button) => [button, wait(button)] as const);
+    for (const [button, left] of waits) offer([button], left <= 0);
+    const next = Math.min(...waits.map(([, left]) => left).filter((left) => left > 0));
+    if (Number.isFinite(next)) setTimeout(look, Math.max(1, Math.ceil(next)));
   };
   look();
 }

@@ -1,6 +1,6 @@
 /** The page's inputs, from its first moment on: one guard for its texts and all kinds of trials. */
 import type { Answer } from "../api.ts";
-import { InputGuard, type Press, type Reason, type Rules } from "./guard.ts";
+import { InputGuard, type Press, QuickPresses, type Reason, type Rules } from "./guard.ts";
 
 export type Input = NonNullable<Answer["input"]>;
 
@@ -28,7 +28,9 @@ function when({ timeStamp }: Event): number {
 export class Inputs {
   readonly #guard = new InputGuard();
   readonly #keys = new WeakMap<Event, Press>();
-  #pointer: { press: Press; input: Input } | null = null;
+  readonly #quick = new QuickPresses();
+  /** The last press of a pointer; `count` is what its click's `detail` should be. */
+  #pointer: { press: Press; input: Input; count: number } | null = null;
   /** The last press of a key that presses a focused button, and until when a click may be its. */
   #pressing: { press: Press; until: number } | null = null;
 
@@ -44,7 +46,7 @@ export class Inputs {
       // While ⌘ is held macOS tells of no other key's release.
       if (event.key === "Meta") this.#guard.letGo();
     });
-    on("pointerdown", (event) => (this.#pointer = { press: this.#guard.down(pointerOf(event), when(event)), input: inputOf(event.pointerType) }));
+    on("pointerdown", (event) => this.#pointerDown(event));
     on("pointerup", (event) => this.#guard.up(pointerOf(event), when(event)));
     on("pointercancel", (event) => this.#guard.up(pointerOf(event), when(event)));
     on("pointermove", (event) => event.buttons === 0 && this.#guard.up(pointerOf(event), when(event)));
@@ -67,7 +69,7 @@ export class Inputs {
     this.#pointer = null;
     if (event.detail > 0 || pointer !== null) {
       const input = pointer?.input ?? inputOf((event as PointerEvent).pointerType ?? "mouse");
-      return { ...given, input, press: pointer?.press ?? fresh("pointer:unknown", at) };
+      return { ...given, input, detail: Math.max(event.detail, pointer?.count ?? 0), press: pointer?.press ?? fresh("pointer:unknown", at) };
     }
     // Without a pointer it is a key's on a focused button, or an aid's, which presses nothing.
     const pressing = this.#pressing !== null && at <= this.#pressing.until ? this.#pressing.press : fresh("key:none", at);
@@ -84,9 +86,16 @@ export class Inputs {
     return reason;
   }
 
-  /** How long from now on nothing counts because of the input before, ms. */
-  gapLeft(rules: Rules): number {
-    return this.#guard.gapLeft(performance.now(), rules);
+  /** How long from now on a press of this button does not count because of the input before, ms. */
+  wait(rules: Rules, button: HTMLElement): number {
+    const now = performance.now();
+    return Math.max(this.#guard.gapLeft(now, rules), this.#quick.left(now, button.getBoundingClientRect()));
+  }
+
+  #pointerDown(event: PointerEvent): void {
+    const [at, input] = [when(event), inputOf(event.pointerType)];
+    const count = input === "mouse" ? 0 : this.#quick.count(at, event.clientX, event.clientY);
+    this.#pointer = { press: this.#guard.down(pointerOf(event), at), input, count };
   }
 
   #keyDown(event: KeyboardEvent): void {

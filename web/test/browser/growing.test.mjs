@@ -74,6 +74,9 @@ test("an answer that is refused for good stops a growing plan, says so, and goes
   const v = await visit(t, { grow, fault: ({ method, path }) => (refuse && method === "PUT" && path.endsWith("/trials/1") ? { status: 422 } : null) });
   await begin(v, "at most 43");
   await answer(v, 0, 2, "left", "at most 43");
+  // Its trial comes once more before anybody is asked what to do.
+  await v.page.getByText("Please choose again").waitFor();
+  await answer(v, 1, 2, "left", "at most 43");
   await v.page.getByText("One answer could not be stored").waitFor();
   // What it waits for must not cover what can be done.
   await v.page.waitForTimeout(600);

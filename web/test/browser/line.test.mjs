@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { problem } from "../mock-server.ts";
-import { answer, begin, painted, position, stored, visit } from "./visit.mjs";
+import { answer, begin, position, stored, visit } from "./visit.mjs";
 
 test("a lost line: the sentence is calm and true, the study goes on, all arrives", async (t) => {
   let down = false;
@@ -45,13 +45,16 @@ test("what one participant left unsent goes out with the next one's visit", asyn
 
 test("pictures that are long in coming are announced", async (t) => {
   const v = await visit(t);
+  let come;
+  const coming = new Promise((resolve) => (come = resolve));
   await v.page.route("**/stimuli/**", async (route) => {
-    await new Promise((resolve) => setTimeout(resolve, 2500));
+    await coming;
     await route.continue();
   });
   await v.hook("consent-agree").click();
   await v.hook("start").click();
   await v.page.getByText(/The pictures are on their way: \D?\d\D* of \D*10\D* are here/).waitFor();
+  come();
   await position(v.page, 0);
   assert.equal(await v.page.locator("#notice").textContent(), "");
 });
@@ -75,13 +78,11 @@ test("a trial whose answer the server refuses is taken again; refused once more 
   // The refusal may come before the next trial or during it.
   const seen = [];
   const missing = v.page.getByText("One answer could not be stored");
-  while (!(await missing.isVisible())) {
-    const at = (await v.page.locator(".position").allTextContents())[0];
-    if (at === undefined || at === seen.at(-1)?.at) continue;
-    await painted(v.page);
-    seen.push({ at, again: await v.page.getByText("its pictures are here once more. Please choose again.").isVisible() });
+  const trial = v.page.locator(".trial:not([data-done])");
+  while (await Promise.race([missing.waitFor().then(() => false), trial.locator(".pair.shown").waitFor().then(() => true)])) {
+    seen.push({ at: await trial.locator(".position").textContent(), again: await v.page.getByText("its pictures are here once more. Please choose again.").isVisible() });
+    await trial.evaluate((element) => (element.dataset.done = ""));
     await v.hook("choice-left").click();
-    await v.page.waitForTimeout(300);
   }
   assert.deepEqual(seen.map(({ at }) => at).sort(), ["1 of 5", "2 of 5", "2 of 5", "3 of 5", "4 of 5", "5 of 5"]);
   assert.equal(seen.filter(({ at }) => at === "2 of 5")[1].again, true);

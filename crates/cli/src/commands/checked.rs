@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
+use kelir_study::Problem;
 use serde_json::{Value, json};
 
 use crate::BadInput;
@@ -21,12 +22,18 @@ impl Checked {
         Checked { json, files: Vec::new(), problems: Vec::new() }
     }
 
-    /// A file that is good; `details` says what it is, for people and for programs.
-    pub fn good(&mut self, file: &Path, details: &str, about: Value) -> Result<()> {
-        self.files.push(
-            json!({ "file": file.display().to_string(), "good": true, "about": about, "problems": [] }),
-        );
-        if self.json { Ok(()) } else { print(&format!("{}: good ({details})", file.display())) }
+    /// A file that is good; `details` says what it is, for people and for programs. `warnings` are what may be a mistake all the same.
+    pub fn good(&mut self, file: &Path, details: &str, about: Value, warnings: &[Problem]) -> Result<()> {
+        let told: Vec<Value> = warnings.iter().map(problem_json).collect();
+        let file = file.display().to_string();
+        self.files
+            .push(json!({ "file": file, "good": true, "about": about, "problems": [], "warnings": told }));
+        if self.json {
+            return Ok(());
+        }
+        let verdict = if warnings.is_empty() { "good" } else { "can be served, but see below" };
+        print(&format!("{file}: {verdict} ({details})"))?;
+        warnings.iter().try_for_each(|warning| print(&format!("warning: {warning}")))
     }
 
     /// A file that is wrong: as text, and problem by problem.
@@ -48,4 +55,9 @@ impl Checked {
         }
         if self.problems.is_empty() { Ok(()) } else { Err(BadInput(self.problems.join("\n")).into()) }
     }
+}
+
+/// A problem for programs.
+pub fn problem_json(problem: &Problem) -> Value {
+    json!({ "file": problem.file, "field": problem.field, "value": problem.value, "rule": problem.rule })
 }

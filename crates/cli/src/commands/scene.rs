@@ -45,7 +45,7 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
     for file in files {
         match shipped::scene(file) {
             Ok(scene) => {
-                checked.good(file, &describe(&scene), json!(Described::of(&name(file), "", &scene)))?
+                checked.good(file, &describe(&scene), json!(Described::of(&name(file), "", &scene)), &[])?
             }
             Err(SceneRefused::Unknown(rule)) => checked.unreadable(file, rule),
             Err(SceneRefused::Wrong(errors)) => {

@@ -1,7 +1,7 @@
 //! `kelir serve`: the platform on one address.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use anyhow::Result;
 use kelir_server::{Handle, Making, PasswordSource, RenderMaker, Server, ServerConfig, TrustedProxies};
 use kelir_store::FolderLock;
 
-use crate::log;
+use crate::log::Log;
 use crate::output::print;
 use crate::{bad_input, progress};
 
@@ -33,18 +33,16 @@ pub struct Args {
 
 /// Runs the command until it is interrupted.
 pub fn run(args: Args) -> Result<()> {
-    let level = tracing_subscriber::EnvFilter::try_from_env("KELIR_LOG").unwrap_or_else(|_| "info".into());
-    let writer = log::Writer::new(std::io::stderr());
-    tracing_subscriber::fmt().with_env_filter(level).with_ansi(false).with_writer(writer.clone()).init();
+    let log = Log::begin(&args.data);
     let runtime = tokio::runtime::Runtime::new()?;
-    let served = runtime.block_on(serve(args));
+    let served = runtime.block_on(serve(args, log.file.as_deref()));
     // A picture that is being drawn is drawn again at the next start; nobody waits for it.
     runtime.shutdown_timeout(Duration::from_secs(1));
-    writer.flush(Duration::from_secs(1));
+    log.flush(Duration::from_secs(1));
     served
 }
 
-async fn serve(args: Args) -> Result<()> {
+async fn serve(args: Args, log: Option<&Path>) -> Result<()> {
     // Held until this returns.
     let _lock = FolderLock::take(&args.data, &format!("http://{}", args.listen))?;
     let trusted_proxies = trusted_proxies(&args.trusted_proxy).map_err(bad_input)?;
@@ -64,6 +62,9 @@ async fn serve(args: Args) -> Result<()> {
     let handle = Server::start(config).await?;
     for line in greeting(&handle) {
         say(&line);
+    }
+    if let Some(file) = log {
+        say(&format!("log            {}", file.display()));
     }
     let mut asked_to_stop = std::pin::pin!(stop_signal());
     tokio::select! {

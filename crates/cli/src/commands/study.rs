@@ -6,10 +6,9 @@ use anyhow::Result;
 use kelir_server::links::{Links, Visit, now};
 use kelir_server::shipped::{Shipped, is_file};
 use kelir_server::{HEAVY_BYTES, Library, StudyFileError, Weight, library_of, results};
-use kelir_study::Problem;
 use serde_json::json;
 
-use super::checked::Checked;
+use super::checked::{Checked, problem_json};
 use super::stored::{block_on, results_error};
 use crate::bad_input;
 use crate::output::{Format, Printed, csv, print, print_json, table};
@@ -204,14 +203,13 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
                     "design_hash": study.design_hash(), "weights": weights.iter().map(weight_json).collect::<Vec<_>>(),
                     "heavy_bytes": HEAVY_BYTES });
                 let details = format!("blocks: {blocks}, trials: {most}{trials}");
-                checked.good(file, &details, about)?;
+                checked.good(file, &details, about, &study.warnings(&file.display().to_string()))?;
                 if !json {
                     print(&weights_text(&weights, study.sizes()))?;
                 }
             }
             Err(StudyFileError::Invalid(errors)) => {
-                let fields = |p: &Problem| json!({ "file": p.file, "field": p.field, "value": p.value, "rule": p.rule });
-                checked.wrong(file, errors.to_string(), errors.0.iter().map(fields).collect());
+                checked.wrong(file, errors.to_string(), errors.0.iter().map(problem_json).collect());
             }
             Err(error) => checked.unreadable(file, error.to_string()),
         }

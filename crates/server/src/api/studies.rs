@@ -93,6 +93,8 @@ pub struct StudySummary {
     /// Of a study that failed: why.
     #[schema(required)]
     pub reason: Option<String>,
+    /// What may be a mistake in its file, and is served all the same.
+    pub warnings: Vec<String>,
     /// Most trials that a participant sees.
     pub most_trials: usize,
     /// How many people take part in the version that is served.

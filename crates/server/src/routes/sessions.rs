@@ -9,7 +9,7 @@ use crate::api::{
     SessionState, SessionStatus, Trial, refusals,
 };
 use crate::app::{App, idle};
-use crate::extract::{Body, Object, Parameters, Participant, Query, SignedIn};
+use crate::extract::{Body, Claim, Object, Parameters, Participant, Query, SignedIn};
 use crate::links::{Visit, is_of_link};
 use crate::making::StimulusMap;
 use crate::password::{random_code, random_token};
@@ -18,11 +18,12 @@ use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{
     Appended, Begun, Completed, NextTrials, PlannedSession, PlannedTrial, Progress, SentAnswer, Session,
-    SessionKind, SizedStimuli, StimulusHashes, sha256_hex,
+    SessionKind, SizedStimuli, StimulusHashes, StoreError, Taken, sha256_hex,
 };
 use kelir_study::visits::Flag;
 use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
 use serde::Deserialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -232,7 +233,7 @@ refusals!(NotStored: Unauthorized, NotFound, InvalidParameter, BadBody, BadJson,
     responses((status = OK, description = "It is stored.", body = Acknowledgement), NotStored)
 )]
 pub(crate) async fn put_answer(
-    Participant(session): Participant,
+    claim: Claim,
     State(app): State<Arc<App>>,
     Parameters(TrialPath { trial_index, .. }): Parameters<TrialPath>,
     Query(known): Query<Known>,
@@ -243,19 +244,21 @@ pub(crate) async fn put_answer(
     let index = trial_index.parse().ok().filter(|i: &u32| i.to_string() == trial_index);
     let known = known.known.map(|known| u32::try_from(known).unwrap_or(u32::MAX));
     let Object { value, text } = body;
-    let sent = SentAnswer { trial_index: index.ok_or_else(no_trial)?, payload: text, known };
-    let has_consent = session.consented_at.is_some();
-    let check = move |trial: &kelir_study::Trial| {
-        if !has_consent {
-            return Err(Problem::new(ProblemCode::NoConsent, "An answer can be stored only after consent."));
-        }
-        let checked = trial.trial.rules().check(&value);
-        checked.map_err(|errors| Problem::fields(ProblemCode::InvalidField, errors))
+    let sent = SentAnswer {
+        session_id: claim.session_id.clone(),
+        trial_index: index.ok_or_else(no_trial)?,
+        payload: text,
+        known,
     };
-    let begun = app.begun(&session).await?;
-    let (deciding, slot) = (begun.clone(), session.slot);
-    let next = move |progress: Progress| next_of(&deciding, slot, &progress);
-    let taken = app.store.take_answer(&session, sent, check, next).await?;
+    let (claim, value) = (Arc::new(claim), Arc::new(value));
+    let taken = match take(&app, &claim, &sent, &value).await {
+        Err(Turned::Unloaded(session)) => {
+            app.begun(&session).await?;
+            take(&app, &claim, &sent, &value).await
+        }
+        taken => taken,
+    };
+    let taken = taken?;
     match taken.appended {
         Appended::Stored | Appended::Same => {}
         Appended::Different(stored) => {
@@ -268,10 +271,62 @@ pub(crate) async fn put_answer(
     }
     let mut trials = Vec::new();
     if !taken.trials.is_empty() {
-        trials = trials_of(&app, Whose::of(&session), &begun.study, &taken.trials, &taken.answered).await?;
+        let (session, study) = (&taken.session, app.begun(&taken.session).await?.study);
+        trials = trials_of(&app, Whose::of(session), &study, &taken.trials, &taken.answered).await?;
     }
     let (next_trial, more) = (taken.next_trial, taken.more);
     Ok(Fresh(Acknowledgement { acknowledged: true, next_trial, more, trials }))
+}
+
+/// Why an answer is not taken.
+enum Turned {
+    Away(Box<Problem>),
+    /// What the session began with has to be read first: the one writer waits for no reader.
+    Unloaded(Box<Session>),
+}
+
+impl From<StoreError> for Turned {
+    fn from(error: StoreError) -> Turned {
+        Turned::Away(error.into())
+    }
+}
+
+impl From<Turned> for Box<Problem> {
+    fn from(turned: Turned) -> Box<Problem> {
+        match turned {
+            Turned::Away(problem) => problem,
+            Turned::Unloaded(_) => Problem::internal("what a session began with does not stay in memory"),
+        }
+    }
+}
+
+/// Takes an answer in one job of the writer: who sends it, whether it may be stored, what follows from it.
+async fn take(
+    app: &Arc<App>,
+    claim: &Arc<Claim>,
+    sent: &SentAnswer,
+    value: &Arc<Value>,
+) -> Result<Taken, Turned> {
+    let (claim, value, deciding) = (claim.clone(), value.clone(), app.clone());
+    let admit = move |session| {
+        let session = claim.admit(session).map_err(Turned::Away)?;
+        if session.consented_at.is_none() {
+            let detail = "An answer can be stored only after consent.";
+            return Err(Turned::Away(Problem::new(ProblemCode::NoConsent, detail)));
+        }
+        Ok(session)
+    };
+    let check = move |trial: &kelir_study::Trial| {
+        let checked = trial.trial.rules().check(&value);
+        let refused = |errors| Turned::Away(Problem::fields(ProblemCode::InvalidField, errors));
+        checked.map_err(refused)
+    };
+    let next = move |session: &Session, progress: Progress| {
+        let unloaded = || Turned::Unloaded(Box::new(session.clone()));
+        let begun = deciding.begun_here(session).ok_or_else(unloaded)?;
+        next_of(&begun, session.slot, &progress).map_err(Turned::Away)
+    };
+    app.store.take_answer(sent.clone(), admit, check, next).await
 }
 
 /// Answer a trial, where what lies between browser and server lets no PUT pass: the same as PUT.
@@ -281,13 +336,13 @@ pub(crate) async fn put_answer(
     responses((status = OK, description = "It is stored.", body = Acknowledgement), NotStored)
 )]
 pub(crate) async fn post_answer(
-    participant: Participant,
+    claim: Claim,
     app: State<Arc<App>>,
     address: Parameters<TrialPath>,
     known: Query<Known>,
     body: Object,
 ) -> Answered<Acknowledgement> {
-    put_answer(participant, app, address, known, body).await
+    put_answer(claim, app, address, known, body).await
 }
 
 /// What follows in a session from what it was shown and answered.
@@ -370,7 +425,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
 
 /// The language in which a session is taken.
 fn language<'a>(study: &'a StudyDefinition, session: &'a Session) -> &'a str {
-    study.language_for(session.display.get("language").and_then(serde_json::Value::as_str))
+    study.language_for(session.display.get("language").and_then(Value::as_str))
 }
 
 pub(super) async fn trials_of(

@@ -92,6 +92,7 @@ fn of_broken(broken: &BrokenStudy) -> StudySummary {
         status: StudyStatus::Failed,
         progress: None,
         reason: Some(broken.reason.clone()),
+        warnings: Vec::new(),
         most_trials: 0,
         participants: Participants::default(),
     }
@@ -123,6 +124,7 @@ async fn summary(app: &App, loaded: &LoadedStudy) -> Result<StudySummary, StoreE
         status,
         progress,
         reason,
+        warnings: crate::server::warnings(study),
         most_trials: study.most_trials(),
     })
 }

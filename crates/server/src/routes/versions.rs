@@ -12,8 +12,9 @@ use crate::results::{StudyResults, pairs_csv, report_of, results_of};
 use crate::selection::Selection;
 use crate::table::codebook_of;
 use axum::body::Body;
-use axum::extract::State;
+use axum::extract::FromRequestParts;
 use axum::http::header;
+use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 use kelir_report::{Document, Figures, StudyReport, html, markdown};
 use kelir_study::columns::{codebook, events_codebook, participants_codebook};
@@ -37,10 +38,25 @@ const XLSX: &str = "application/vnd.openxmlformats-officedocument.spreadsheetml.
 
 type File = Result<Response, Box<Problem>>;
 
-/// The versions that are asked for.
-async fn chosen(app: &App, path: &VersionPath, pooling: &Pooling) -> Result<Selection, Box<Problem>> {
-    let selection = app.select(&path.study, &version_ref(&path.version)?, &pooling.with()?).await?;
-    Ok(selection.including(pooling.include()?))
+/// What a researcher who is signed in asks for.
+pub(crate) struct Asked {
+    app: Arc<App>,
+    study: String,
+    /// The versions.
+    selection: Selection,
+}
+
+impl FromRequestParts<Arc<App>> for Asked {
+    type Rejection = Box<Problem>;
+
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Asked, Box<Problem>> {
+        Researcher::from_request_parts(parts, app).await?;
+        let Parameters(VersionPath { study, version }) = Parameters::from_request_parts(parts, app).await?;
+        let Query(pooling) = Query::<Pooling>::from_request_parts(parts, app).await?;
+        let selection = app.select(&study, &version_ref(&version)?, &pooling.with()?).await?;
+        let selection = selection.including(pooling.include()?);
+        Ok(Asked { app: app.clone(), study, selection })
+    }
 }
 
 /// The results in short: the paper's test for each block, the scale, the stimuli.
@@ -49,13 +65,8 @@ async fn chosen(app: &App, path: &VersionPath, pooling: &Pooling) -> Result<Sele
     params(VersionPath, Pooling),
     responses((status = OK, description = "The results.", body = StudyResults), Chosen)
 )]
-pub(crate) async fn get_results(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> Answered<StudyResults> {
-    let selection = chosen(&app, &path, &pooling).await?;
+pub(crate) async fn get_results(asked: Asked) -> Answered<StudyResults> {
+    let Asked { app, selection, .. } = asked;
     let answers = app.answers(&selection).await?;
     Ok(Fresh(results_of(&app.store, &selection, &answers).await?))
 }
@@ -66,13 +77,8 @@ pub(crate) async fn get_results(
     params(VersionPath, Pooling),
     responses((status = OK, description = "The report.", body = StudyReport), Chosen)
 )]
-pub(crate) async fn get_report(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> Answered<StudyReport> {
-    Ok(Fresh(judged(&app, path, pooling).await?))
+pub(crate) async fn get_report(asked: Asked) -> Answered<StudyReport> {
+    Ok(Fresh(judged(asked).await?))
 }
 
 /// The full report as one HTML file.
@@ -81,14 +87,9 @@ pub(crate) async fn get_report(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/html"), Chosen)
 )]
-pub(crate) async fn get_report_html(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    let name = format!("{}-report.html", path.study);
-    let document = Document::of(&judged(&app, path, pooling).await?);
+pub(crate) async fn get_report_html(asked: Asked) -> File {
+    let name = format!("{}-report.html", asked.study);
+    let document = Document::of(&judged(asked).await?);
     Ok(download("text/html; charset=utf-8", &name, html(&document)))
 }
 
@@ -98,22 +99,17 @@ pub(crate) async fn get_report_html(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/markdown"), Chosen)
 )]
-pub(crate) async fn get_report_md(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    let name = format!("{}-report.md", path.study);
-    let document = Document::of(&judged(&app, path, pooling).await?);
+pub(crate) async fn get_report_md(asked: Asked) -> File {
+    let name = format!("{}-report.md", asked.study);
+    let document = Document::of(&judged(asked).await?);
     Ok(download("text/markdown; charset=utf-8", &name, markdown(&document, &Figures::Embedded).text))
 }
 
 /// The full report of a study. It resamples participants, which keeps a core busy: one at a time.
-async fn judged(app: &Arc<App>, path: VersionPath, pooling: Pooling) -> Result<StudyReport, Box<Problem>> {
-    let selection = chosen(app, &path, &pooling).await?;
-    let _permit = app.reporting.acquire().await.map_err(Problem::internal)?;
+async fn judged(asked: Asked) -> Result<StudyReport, Box<Problem>> {
+    let Asked { app, selection, .. } = asked;
     let task = app.clone();
+    let _permit = app.reporting.acquire().await.map_err(Problem::internal)?;
     // On a thread of its own kind: answering participants must not wait for it.
     let judged = tokio::task::spawn_blocking(move || {
         tokio::runtime::Handle::current().block_on(async {
@@ -130,15 +126,9 @@ async fn judged(app: &Arc<App>, path: VersionPath, pooling: Pooling) -> Result<S
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
-pub(crate) async fn get_responses_csv(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    let selection = chosen(&app, &path, &pooling).await?;
-    let table = responses_csv(&app.store, &selection).await?;
-    Ok(csv(&format!("{}-responses.csv", path.study), table))
+pub(crate) async fn get_responses_csv(asked: Asked) -> File {
+    let table = responses_csv(&asked.app.store, &asked.selection).await?;
+    Ok(csv(&format!("{}-responses.csv", asked.study), table))
 }
 
 /// One row a session: who came, when, with what, how far, and whether their answers are judged. What each column is, is in
@@ -148,15 +138,9 @@ pub(crate) async fn get_responses_csv(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
-pub(crate) async fn get_participants_csv(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    let selection = chosen(&app, &path, &pooling).await?;
-    let table = participants_table(&app.store, &selection).await?;
-    Ok(csv(&format!("{}-participants.csv", path.study), table.csv()))
+pub(crate) async fn get_participants_csv(asked: Asked) -> File {
+    let table = participants_table(&asked.app.store, &asked.selection).await?;
+    Ok(csv(&format!("{}-participants.csv", asked.study), table.csv()))
 }
 
 /// What each column of `participants.csv` is, as a table.
@@ -165,15 +149,9 @@ pub(crate) async fn get_participants_csv(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
-pub(crate) async fn get_participants_codebook_csv(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    let selection = chosen(&app, &path, &pooling).await?;
-    let table = codebook_of(&participants_codebook(&selection.study.session.params));
-    Ok(csv(&format!("{}-participants-codebook.csv", path.study), table.csv()))
+pub(crate) async fn get_participants_codebook_csv(asked: Asked) -> File {
+    let table = codebook_of(&participants_codebook(&asked.selection.study.session.params));
+    Ok(csv(&format!("{}-participants-codebook.csv", asked.study), table.csv()))
 }
 
 /// Every table in one spreadsheet, with a codebook: numbers are numbers whatever language the reader's spreadsheet speaks.
@@ -182,15 +160,9 @@ pub(crate) async fn get_participants_codebook_csv(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = Vec<u8>, content_type = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"), Chosen)
 )]
-pub(crate) async fn get_export_xlsx(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    let selection = chosen(&app, &path, &pooling).await?;
-    let file = spreadsheet(&app.store, &selection).await.map_err(Problem::internal)?;
-    Ok(download(XLSX, &format!("{}.xlsx", path.study), file))
+pub(crate) async fn get_export_xlsx(asked: Asked) -> File {
+    let file = spreadsheet(&asked.app.store, &asked.selection).await.map_err(Problem::internal)?;
+    Ok(download(XLSX, &format!("{}.xlsx", asked.study), file))
 }
 
 /// The choices as pwcmp reads them, one row a trial.
@@ -199,15 +171,9 @@ pub(crate) async fn get_export_xlsx(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
-pub(crate) async fn get_pairs_csv(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    let selection = chosen(&app, &path, &pooling).await?;
-    let table = pairs_csv(&app.store, &selection).await?;
-    Ok(csv(&format!("{}-pairs.csv", path.study), table))
+pub(crate) async fn get_pairs_csv(asked: Asked) -> File {
+    let table = pairs_csv(&asked.app.store, &asked.selection).await?;
+    Ok(csv(&format!("{}-pairs.csv", asked.study), table))
 }
 
 /// One row for each thing that happened to a page while a trial was taken: lost focus, a resize, an input that did not count.
@@ -216,15 +182,9 @@ pub(crate) async fn get_pairs_csv(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
-pub(crate) async fn get_events_csv(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    let selection = chosen(&app, &path, &pooling).await?;
-    let table = events_table(&app.store, &selection).await?;
-    Ok(csv(&format!("{}-events.csv", path.study), table.csv()))
+pub(crate) async fn get_events_csv(asked: Asked) -> File {
+    let table = events_table(&asked.app.store, &asked.selection).await?;
+    Ok(csv(&format!("{}-events.csv", asked.study), table.csv()))
 }
 
 /// What each column of `events.csv` is, as a table.
@@ -233,14 +193,8 @@ pub(crate) async fn get_events_csv(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
-pub(crate) async fn get_events_codebook_csv(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    chosen(&app, &path, &pooling).await?;
-    Ok(csv(&format!("{}-events_codebook.csv", path.study), codebook_of(&events_codebook()).csv()))
+pub(crate) async fn get_events_codebook_csv(asked: Asked) -> File {
+    Ok(csv(&format!("{}-events_codebook.csv", asked.study), codebook_of(&events_codebook()).csv()))
 }
 
 /// What each column of `responses.csv` is, as a table.
@@ -249,14 +203,8 @@ pub(crate) async fn get_events_codebook_csv(
     params(VersionPath, Pooling),
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
-pub(crate) async fn get_codebook_csv(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> File {
-    chosen(&app, &path, &pooling).await?;
-    Ok(csv(&format!("{}-codebook.csv", path.study), codebook_csv()))
+pub(crate) async fn get_codebook_csv(asked: Asked) -> File {
+    Ok(csv(&format!("{}-codebook.csv", asked.study), codebook_csv()))
 }
 
 /// What each column of `responses.csv` is.
@@ -265,13 +213,7 @@ pub(crate) async fn get_codebook_csv(
     params(VersionPath, Pooling),
     responses((status = OK, description = "The codebook.", body = Codebook), Chosen)
 )]
-pub(crate) async fn get_codebook(
-    _: Researcher,
-    State(app): State<Arc<App>>,
-    Parameters(path): Parameters<VersionPath>,
-    Query(pooling): Query<Pooling>,
-) -> Answered<Codebook> {
-    chosen(&app, &path, &pooling).await?;
+pub(crate) async fn get_codebook(_: Asked) -> Answered<Codebook> {
     Ok(Fresh(Codebook { columns: codebook() }))
 }
 

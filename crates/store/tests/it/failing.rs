@@ -1,7 +1,7 @@
 //! A disk that fails: nothing that was acknowledged is lost, and the store is back once the cause is gone.
 
 use crate::setting::{IDLE, answer, append, begin, open, stranger};
-use kelir_store::{Appended, NextTrials, Session, Store, StoreError, Trouble};
+use kelir_store::{Appended, NextTrials, SentAnswer, Session, Store, StoreError, Trouble};
 use kelir_study::trials::Checked;
 
 async fn try_append(store: &Store, session: &Session, trial: u32) -> Result<Appended, StoreError> {
@@ -39,8 +39,10 @@ async fn a_job_that_fails_or_panics_takes_no_other_with_it() {
                 _ if n % 2 == 0 => Err(StoreError::Undecodable("no answer".to_owned())),
                 _ => panic!("on purpose"),
             };
-            let sent = kelir_store::SentAnswer { trial_index: n % 3, payload: format!("{n}"), known: None };
-            store.take_answer(&session, sent, check, |_| Ok(NextTrials::default())).await.is_ok()
+            let session_id = session.session_id.clone();
+            let sent = SentAnswer { session_id, trial_index: n % 3, payload: format!("{n}"), known: None };
+            let (admit, next) = (|_| Ok(session), |_: &Session, _| Ok(NextTrials::default()));
+            store.take_answer(sent, admit, check, next).await.is_ok()
         })
     });
     let mut stored = Vec::new();

@@ -1,14 +1,19 @@
 //! `[completion]`: the code at the end and where it leads, each placeholder of the address resolved.
 
 use crate::conduct::SessionRules;
-use crate::definition::{Completion, PANEL_PARAMS};
-use crate::fields::{Fields, Gatherer, text};
+use crate::definition::{CREDITING_PARAMS, Completion, PANEL_PARAMS, StudyDefinition};
+use crate::fields::{Fields, Gatherer, shorten, text};
+use crate::problems::Problem;
 use toml::Value;
+
+/// From this edition on an address that breaks a rule is refused. Before, studies ran with it, and go on: it is a warning.
+const STRICT_FROM: u64 = 2;
 
 pub(super) fn read(
     gatherer: &Gatherer<'_>,
     fields: &mut Fields<'_>,
     session: Option<&SessionRules>,
+    edition: Option<u64>,
 ) -> Option<Completion> {
     let Some(value) = fields.raw("completion") else { return Some(Completion::default()) };
     let mut fields = Fields::of(gatherer, "completion".to_owned(), value)?;
@@ -21,18 +26,39 @@ pub(super) fn read(
                 s.starts_with("https://") && !s.contains(|c: char| c.is_whitespace() || c.is_control())
             })
         });
-    if let Some(address) = &redirect {
-        for rule in broken(address, code.as_deref(), session) {
+    let completion = Completion { code, redirect };
+    if edition.is_some_and(|edition| edition >= STRICT_FROM)
+        && let (Some(address), Some(session)) = (&completion.redirect, session)
+    {
+        for rule in broken(&completion, session) {
             fields.report("redirect", Some(&Value::String(address.clone())), rule);
         }
     }
     fields.finish();
-    Some(Completion { code, redirect })
+    Some(completion)
 }
 
-/// The rules that an address breaks: a host, placeholders that are filled in, and the code among them.
-fn broken(address: &str, code: Option<&str>, session: Option<&SessionRules>) -> Vec<String> {
+impl StudyDefinition {
+    /// What may be a mistake in a study that is served all the same, because studies of its edition always were. `file` names it.
+    pub fn warnings(&self, file: &str) -> Vec<Problem> {
+        if u64::from(self.edition) >= STRICT_FROM {
+            return Vec::new();
+        }
+        let value = self.completion.redirect.clone().map(|address| shorten(&Value::String(address)));
+        let warning = |rule| Problem {
+            file: file.to_owned(),
+            field: "completion.redirect".to_owned(),
+            value: value.clone(),
+            rule,
+        };
+        broken(&self.completion, &self.session).into_iter().map(warning).collect()
+    }
+}
+
+/// The rules that an address breaks: a host, placeholders that are filled in, and something among them to be credited by.
+fn broken(completion: &Completion, session: &SessionRules) -> Vec<String> {
     let mut rules = Vec::new();
+    let Some(address) = completion.redirect.as_deref() else { return rules };
     let host = address.trim_start_matches("https://").split(['/', '?', '#']).next().unwrap_or_default();
     let plain = |c: char| c.is_alphanumeric() || "-.:".contains(c);
     if host.is_empty() || host.starts_with(['.', ':', '-']) || !host.chars().all(plain) {
@@ -45,21 +71,25 @@ fn broken(address: &str, code: Option<&str>, session: Option<&SessionRules>) -> 
             return rules;
         }
     };
-    let own = session.map(|session| session.params.iter().chain(&session.id)).into_iter().flatten();
-    let known: Vec<&str> =
-        std::iter::once("CODE").chain(PANEL_PARAMS).chain(own.map(String::as_str)).collect();
+    let known: Vec<&str> = std::iter::once("CODE")
+        .chain(PANEL_PARAMS)
+        .chain(session.params.iter().chain(&session.id).map(String::as_str))
+        .collect();
     for name in &placeholders {
         // Which parameters a link has is known for certain only of those that are listed.
-        if session.is_some() && !known.contains(name) {
+        if !known.contains(name) {
             let all: Vec<String> = known.iter().map(|name| format!("[{name}]")).collect();
             rules.push(format!(
-                "[{name}] is never filled in; there are {}, and what session.params lists",
+                "[{name}] is filled in only where session.params lists it; known here are {}",
                 all.join(", ")
             ));
         }
     }
-    let written = code.is_some_and(|code| address.contains(code));
-    if !placeholders.contains(&"CODE") && !written {
+    let written = completion.code.as_ref().is_some_and(|code| address.contains(code.as_str()));
+    let credited = |name: &&str| {
+        *name == "CODE" || CREDITING_PARAMS.contains(name) || session.id.as_deref() == Some(*name)
+    };
+    if !written && !placeholders.iter().any(credited) {
         rules.push("must hold [CODE], or whoever comes back has no code to show".to_owned());
     }
     rules

@@ -17,7 +17,7 @@ export class EventLog {
   #dropped = 0;
 
   add(event: Omit<Kept, "at">, at = performance.now()): void {
-    const last = this.#kept.at(-1);
+    const last = this.#kept[this.#kept.length - 1];
     if (event.event === "resize" && last?.event === "resize" && at - last.at < ONE_RESIZE_MS) this.#kept.pop();
     const ignored = event.event === "ignored" ? this.#kept.filter((kept) => kept.event === "ignored").length : 0;
     if (this.#kept.length >= MOST || ignored >= MOST_IGNORED) this.#dropped += 1;

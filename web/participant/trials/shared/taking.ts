@@ -5,8 +5,9 @@ import type { Rules } from "../../inputs/guard.ts";
 import type { Pixels } from "../../layout.ts";
 import { type Given, inputs } from "../../inputs/watch.ts";
 import { eventLog } from "./events.ts";
+import { frameAt } from "../../steady.ts";
 import { hiddenTime } from "./hidden.ts";
-import { offered } from "../../inputs/offered.ts";
+import { offer, offered } from "../../inputs/offered.ts";
 
 export type Geometry = Schemas["Geometry"];
 /** What can be chosen: the role of a stimulus. */
@@ -37,6 +38,9 @@ export class Taking<Role extends Chosen> {
   readonly #options: Options<Role>;
   readonly #log = eventLog();
   readonly #listening = new AbortController();
+  /** Until there is a choice. */
+  readonly #offering = new AbortController();
+  readonly #buttons: readonly HTMLButtonElement[];
   #onset = Number.POSITIVE_INFINITY;
   #hiddenMs = () => 0;
   #atOnset: Geometry | null = null;
@@ -47,7 +51,9 @@ export class Taking<Role extends Chosen> {
 
   constructor(options: Options<Role>) {
     this.#options = options;
+    this.#buttons = Object.values(options.buttons);
     const { signal } = this.#listening;
+    offer(this.#buttons, false);
     for (const [role, button] of Object.entries<HTMLButtonElement>(options.buttons) as Array<[Role, HTMLButtonElement]>) {
       button.addEventListener("click", (event) => this.#attempt(role, inputs.click(event)), { signal });
     }
@@ -59,10 +65,11 @@ export class Taking<Role extends Chosen> {
   /** From `onset` on, a frame's time, the stimuli can be answered. */
   open(onset: number): void {
     this.#onset = onset;
+    frameAt(onset);
     this.#hiddenMs = hiddenTime(this.#listening.signal);
     this.#atOnset = this.#options.geometry();
     this.#last = JSON.stringify(this.#atOnset);
-    offered(Object.values(this.#options.buttons), () => this.#wait(), this.#listening.signal);
+    offered(this.#buttons, (button) => this.#wait(button), this.#offering.signal);
   }
 
   /** The stimuli may stand otherwise than before. */
@@ -102,6 +109,7 @@ export class Taking<Role extends Chosen> {
   /** Listens no more. What is pressed until then is logged for the next answer. */
   close(): void {
     this.#listening.abort();
+    this.#offering.abort();
   }
 
   #key(event: KeyboardEvent): void {
@@ -119,12 +127,15 @@ export class Taking<Role extends Chosen> {
     const reason = this.#choice === null ? inputs.judge(given, rules, visibleMs, simulated) : "answered";
     if (reason !== null) return this.#log.add({ event: "ignored", reason, input: given.input, choice: role }, given.at);
     this.#choice = { role, input: given.input, at: given.at };
+    this.#offering.abort();
+    offer(this.#buttons, false);
     this.#chosen(this.#choice);
   }
 
-  /** How long an answer that began now would not count yet, ms. */
-  #wait(): number {
+  /** How long a press of a button that began now would not count yet, ms. */
+  #wait(button: HTMLButtonElement): number {
+    const { rules } = this.#options;
     const visibleMs = performance.now() - this.#onset - this.#hiddenMs();
-    return Math.max(this.#options.rules.min_visible_ms - visibleMs, inputs.gapLeft(this.#options.rules));
+    return Math.max(rules.min_visible_ms - visibleMs, inputs.wait(rules, button));
   }
 }

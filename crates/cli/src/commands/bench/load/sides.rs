@@ -15,7 +15,7 @@ const STUDY: &str = r#"
 title = "Load"
 question = "Which?"
 seed = 3
-size = [16, 9]
+size = [32, 18]
 estimated_minutes = 1
 texts = { welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }
 conditions = { pa = { technique = "pa" }, mc = { technique = "mc" } }
@@ -105,6 +105,9 @@ pub fn express() -> Result<Side> {
     start("Express + better-sqlite3", command, folder, "http://")
 }
 
+/// What kelir says where its study is not served.
+const NOT_SERVED: &str = "Not every study can be taken";
+
 /// Starts a server and waits for the line that says it is ready; the first address that it prints is its own.
 fn start(name: &'static str, mut command: Command, folder: TempDir, ready: &str) -> Result<Side> {
     let mut process = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn()?;
@@ -113,12 +116,16 @@ fn start(name: &'static str, mut command: Command, folder: TempDir, ready: &str)
     for line in lines.map_while(Result::ok) {
         let found = line.split_once("http://").and_then(|(_, rest)| rest.split('/').next()?.parse().ok());
         address = address.or(found);
+        if line.starts_with(NOT_SERVED) {
+            break;
+        }
         if line.contains(ready) {
             let address = address.context("it printed no address")?;
             return Ok(Side { name, address, process, _folder: folder });
         }
     }
-    // Waited for, so that nothing is left of it.
+    // Nothing is left of it: it may run on without being ready.
+    process.kill()?;
     process.wait()?;
     anyhow::bail!("{name} did not start")
 }

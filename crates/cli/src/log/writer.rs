@@ -1,4 +1,4 @@
-//! The log of a running server: written by a thread of its own, so that a slow, full or closed stderr costs no request anything.
+//! Lines are written by a thread of its own, so that a slow, full or closed log costs no request anything.
 
 use std::io::{self, Write};
 use std::sync::Arc;
