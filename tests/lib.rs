@@ -320,14 +320,19 @@ pub fn edit(folder: &Path, file: &str, from: &str, to: &str) {
     std::fs::write(path, text.replace(from, to)).unwrap();
 }
 
-/// A data folder with the built-in study's stimuli, made once for the whole test run and copied for each test.
+/// A data folder with the built-in study's stimuli, of few samples, made once for the whole test run and copied for each test.
 pub fn prepared_data() -> tempfile::TempDir {
     static MADE: std::sync::OnceLock<PathBuf> = std::sync::OnceLock::new();
     let made = MADE.get_or_init(|| {
         // Beside the build, so that a test run cleans up after the one before it.
         let data = binary().parent().unwrap().parent().unwrap().join("tmp/e2e-data");
         let _ = std::fs::remove_dir_all(&data);
-        std::fs::create_dir_all(&data).unwrap();
+        std::fs::create_dir_all(data.join("studies")).unwrap();
+        // As it ships but for the samples of its reference, which take minutes: an animation is drawn at two sizes.
+        let shipped = std::fs::read_to_string(root().join("stimuli/studies/shadow-puppets.toml")).unwrap();
+        assert!(shipped.contains("spp = 1024"));
+        std::fs::write(data.join("studies/shadow-puppets.toml"), shipped.replace("spp = 1024", "spp = 16"))
+            .unwrap();
         let status = Server::start(&data, true).terminate();
         assert!(status.success(), "a server that is asked to stop ends well: {status}");
         data
