@@ -9,21 +9,27 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
+pub mod soak;
+
 /// The repository's root.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
 }
 
-/// The built `kelir` beside this test binary; `cargo xtask test` builds it first.
+/// The `kelir` that is tried: that of `KELIR_BIN`, or the one built beside this program; `cargo xtask test` builds it first.
 pub fn binary() -> PathBuf {
-    let test = std::env::current_exe().unwrap();
-    let path = test.parent().unwrap().parent().unwrap().join("kelir");
-    assert!(
-        path.is_file(),
-        "{} is missing: run `cargo build --workspace` first (cargo xtask test does)",
-        path.display()
-    );
-    path
+    if let Some(named) = std::env::var_os("KELIR_BIN") {
+        return named.into();
+    }
+    let this = std::env::current_exe().unwrap();
+    let built =
+        this.ancestors().skip(1).take(2).map(|folder| folder.join("kelir")).find(|path| path.is_file());
+    built.expect("kelir is missing: run `cargo build --workspace` first (cargo xtask test does)")
+}
+
+/// A port that nobody listens on.
+pub fn free_port() -> u16 {
+    std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
 /// Runs `kelir ARGS` to its end.
@@ -116,6 +122,11 @@ impl Server {
             assert!(begun.elapsed() < Duration::from_secs(900), "{path} did not answer");
             std::thread::sleep(Duration::from_millis(100));
         }
+    }
+
+    /// Its process.
+    pub fn id(&self) -> u32 {
+        self.child.id()
     }
 
     /// `kill -9`, at once.

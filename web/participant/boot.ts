@@ -10,16 +10,20 @@ declare var WORDS: Record<string, Record<"too-old" | "not-loaded" | "reload", st
   function show(id: "too-old" | "not-loaded"): void {
     var language = (navigator.language || "en").slice(0, 2).toLowerCase();
     var words = WORDS[language] || WORDS["en"]!;
-    var text = document.createElement("p");
-    text.appendChild(document.createTextNode(words[id] + " "));
+    var page = document.createElement("main");
+    var text = document.createElement("div");
+    text.setAttribute("role", "alert");
+    text.appendChild(document.createElement("h1")).appendChild(document.createTextNode(words[id]));
     var again = document.createElement("a");
     again.href = location.href;
+    again.className = "link";
     again.appendChild(document.createTextNode(words["reload"]));
     if (id === "not-loaded") text.appendChild(again);
-    text.id = "boot";
-    text.dir = language === "ar" ? "rtl" : "ltr";
-    text.setAttribute("role", "alert");
-    document.body.appendChild(text);
+    page.id = "boot";
+    page.lang = WORDS[language] ? language : "en";
+    page.dir = language === "ar" ? "rtl" : "ltr";
+    page.appendChild(text);
+    document.body.appendChild(page);
   }
 
   /** Says it unless the page is there already; `refused` keeps the page from starting. */

@@ -10,13 +10,13 @@ import { Session } from "./session.ts";
 import { Unusable } from "./stimuli.ts";
 import { openStore, sessionKey } from "./storage.ts";
 import { openTabs } from "./tabs.ts";
+import { showPage } from "./text-page.ts";
 import { showRibbon, visitOf } from "./trying.ts";
 import { Visit } from "./visit.ts";
 import { settle, Tab } from "./whose.ts";
 import { speak, spoken, words } from "./words/index.ts";
 import "./style.css";
 
-document.body.append(display, notice);
 speak(spoken(navigator.language));
 
 const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?.[1] ?? "");
@@ -26,7 +26,11 @@ const params = Object.fromEntries(
   [...query].filter(([name]) => name !== "lang" && [...name].length <= 64).map(([name, value]) => [name, [...value].slice(0, 1024).join("")]).slice(0, 64),
 );
 
+/** How long the page may stand empty, ms; then it has at least a heading, above which a notice says what is waited for. */
+const EMPTY_MS = 400;
+
 async function start(): Promise<void> {
+  const empty = setTimeout(() => display.childElementCount === 0 && showPage(display, words("deciding-title"), []), EMPTY_MS);
   const visit = await visitOf(studyId);
   const kept = visit !== "preview";
   const key = kept ? sessionKey(studyId, params) : `kelir:preview:${crypto.getRandomValues(new Uint32Array(2)).join("-")}`;
@@ -49,6 +53,7 @@ async function start(): Promise<void> {
   session = new Session(study.id, key, params, store);
   const tab = new Tab(key, openStore(() => (kept ? sessionStorage : memoryOnly())));
   await settle(session, tab, study.per_visit, elsewhere);
+  clearTimeout(empty);
   tabs.claim();
   session.resume();
   if (session.state !== null) tab.has(session.id);
@@ -97,6 +102,7 @@ const isOurs = (error: unknown) => (error instanceof TypeError || error instance
 if (document.documentElement.dataset.refused === undefined) {
   document.documentElement.dataset.started = "";
   document.getElementById("boot")?.remove();
+  document.body.append(display, notice);
   // What fails where nobody waits for it, such as a function that a browser lacks, would leave the page standing without a word.
   addEventListener("error", ({ error }) => isOurs(error) && stop(error));
   addEventListener("unhandledrejection", ({ reason }) => isOurs(reason) && stop(reason));

@@ -9,13 +9,23 @@ export const notice = h("p", { id: "notice", role: "status" });
 type About = "trial" | "answers" | "page" | "pictures";
 
 const troubles = new Map<About, string>();
+let over = false;
 
 /** Says a sentence about one thing, or that there is nothing more to say of it. */
 export function say(about: About, sentence: string | null): void {
+  if (over) return;
   if (sentence === null) troubles.delete(about);
   else troubles.set(about, sentence);
   const text = troubles.get("trial") ?? [...troubles.values()][0] ?? "";
-  if (notice.textContent !== text) notice.textContent = text;
+  if (notice.textContent === text) return;
+  notice.textContent = text;
+  document.documentElement.style.setProperty("--notice", `${notice.offsetHeight}px`);
+}
+
+/** Says nothing more: the page says itself how the visit has ended. */
+export function hush(): void {
+  for (const about of [...troubles.keys()]) say(about, null);
+  over = true;
 }
 
 /** Tries until the server answers yes or a final no; says so when it takes longer. */

@@ -5,6 +5,7 @@ import { copied } from "./copy.ts";
 import { languages, type Reading } from "./language.ts";
 import { legendsContent } from "./legend.ts";
 import { linkedParagraphs } from "./links.ts";
+import { hush } from "./notice.ts";
 import { showPage } from "./text-page.ts";
 import type { TrialModule } from "./trials/module.ts";
 import { direction, words } from "./words/index.ts";
@@ -14,6 +15,7 @@ export const display = h("main", { id: "study" });
 
 /** A page that ends the visit, with at most one thing to do. */
 export function lastPage(heading: string, texts: string[], action?: HTMLElement): void {
+  hush();
   const screen = h("div", {});
   display.replaceChildren(screen);
   showPage(screen, heading, paragraphs(texts), action);

@@ -35,7 +35,7 @@ export class Visit {
     (progress) => this.#tell({ progress }),
   );
   /** What is known of the pictures on their way. */
-  #coming: Coming = { slow: false, awaited: false, progress: { here: 0, of: 0, bytes: 0 } };
+  #coming: Coming = { slow: false, sentence: null, progress: { here: 0, of: 0, bytes: 0 } };
   #refresh: Promise<number | null> | null = null;
   #instructed = false;
 
@@ -208,11 +208,15 @@ export class Visit {
   }
 
   /**
-   * A trial's pictures, at the size that fits the window when they are here; says how far they are when they are long in coming, for the screen is
-   * empty until then.
+   * A trial's pictures, at the size that fits the window when they are here; a page says how far they are when they are long in coming, for the screen
+   * is empty until then.
    */
   async #load(trial: Trial, kind: TrialModule): Promise<Pictures> {
-    const slow = setTimeout(() => this.#tell({ awaited: true }), PATIENCE_MS);
+    const sentence = h("p", { role: "status" });
+    const slow = setTimeout(() => {
+      showPage(this.#jsPsych.getDisplayElement() ?? cleared(), words("deciding-title"), [sentence]);
+      this.#tell({ sentence });
+    }, PATIENCE_MS);
     const now = () => atSize(trial, pickSize(kind, this.#study));
     try {
       for (let sized = now(); ; ) {
@@ -223,16 +227,17 @@ export class Visit {
       }
     } finally {
       clearTimeout(slow);
-      this.#tell({ awaited: false });
+      this.#tell({ sentence: null });
     }
   }
 
   /** Says what there is to say of the pictures on their way: how far they are to who waits for them. */
   #tell(news: Partial<Coming>): void {
     Object.assign(this.#coming, news);
-    const { slow, awaited, progress } = this.#coming;
+    const { slow, sentence, progress } = this.#coming;
     const { here, of, bytes } = progress;
-    say("pictures", slow ? words("pictures-slow") : awaited ? words("pictures-coming", { here, of, mb: bytes / 1e6 }) : null);
+    say("pictures", slow ? words("pictures-slow") : null);
+    if (sentence !== null) sentence.textContent = words("pictures-coming", { here, of, mb: bytes / 1e6 });
   }
 
   #measure(): Promise<number | null> {
@@ -257,10 +262,10 @@ export class Visit {
   }
 }
 
-/** Whether the line is slow and whether the pictures are waited for, and how far they are. */
+/** Whether the line is slow, where it is said to who waits how far the pictures are, and how far they are. */
 interface Coming {
   slow: boolean;
-  awaited: boolean;
+  sentence: HTMLElement | null;
   progress: Progress;
 }
 

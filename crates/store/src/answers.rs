@@ -159,8 +159,8 @@ impl Store {
         let admit = |session: Option<Session>| {
             Ok(session.ok_or_else(|| StoreError::corrupt("session", "is not stored"))?)
         };
-        let next = |_: &Session, progress| next(progress);
         let check = move |_: &kelir_study::Trial| Ok(Checked { answer, stimulus_size });
+        let next = |_: &Session, progress| next(progress);
         Ok(self.take_answer(sent, admit, check, next).await?.appended)
     }
 

@@ -12,14 +12,15 @@ const found = async (page, where) => (await page.evaluate(`(${violations})()`)).
 for (const [size, options] of Object.entries(sizes)) {
   for (const lang of ["en", "de", "ar"]) {
     test(`participants' pages, ${size}, ${lang}`, async (t) => {
-      for (const { walk, stuff, query } of Object.values(visits)) {
-        const v = await visit(t, { options, stuff: stuff(), query: `?lang=${lang}${query === undefined ? "" : `&${query}`}` });
+      for (const { walk, stuff, query, server } of Object.values(visits)) {
+        const v = await visit(t, { options, stuff: stuff(), query: `?lang=${lang}${query === undefined ? "" : `&${query}`}`, ...server });
         let looked = 0;
         await walk(v, async (where, page = v.page) => {
           looked += 1;
           assert.deepEqual(await found(page, where), []);
         });
         assert.ok(looked > 0);
+        if (server !== undefined) v.problems.length = 0; // trouble is said in the browser's console too
       }
     });
   }

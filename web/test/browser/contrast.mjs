@@ -1,7 +1,7 @@
-// How well the words of buttons and links can be read: WCAG 2's contrast, from computed styles.
+// How well the words of buttons, links and notices can be read: WCAG 2's contrast, from computed styles.
 
 /**
- * In the page: of every visible button and link with words, what it says and the contrast of that with what is behind it, as the
+ * In the page: of every visible button, link and notice with words, what it says and the contrast of that with what is behind it, as the
  * browser would paint both: backgrounds and opacities of all ancestors count. `edge` is the contrast of what tells a button from the page.
  */
 export function contrasts() {
@@ -30,7 +30,7 @@ export function contrasts() {
   document.body.append(paper);
   const canvas = over(channels(getComputedStyle(paper).backgroundColor), [255, 255, 255]);
   paper.remove();
-  return [...document.querySelectorAll('button, a[href], summary, input:not([type="radio"], [type="checkbox"]), select, [role="button"]')].flatMap((element) => {
+  return [...document.querySelectorAll('button, a[href], summary, input:not([type="radio"], [type="checkbox"]), select, [role="button"], #notice, #ribbon span, #boot h1, .page [role="status"]')].flatMap((element) => {
     const words = (element.innerText || element.value || "").trim();
     if (words === "" || !element.checkVisibility({ visibilityProperty: true, opacityProperty: true })) return [];
     const chain = [];
