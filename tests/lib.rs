@@ -9,21 +9,27 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
+pub mod soak;
+
 /// The repository's root.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
 }
 
-/// The built `kelir` beside this test binary; `cargo xtask test` builds it first.
+/// The `kelir` that is tried: that of `KELIR_BIN`, or the one built beside this program; `cargo xtask test` builds it first.
 pub fn binary() -> PathBuf {
-    let test = std::env::current_exe().unwrap();
-    let path = test.parent().unwrap().parent().unwrap().join("kelir");
-    assert!(
-        path.is_file(),
-        "{} is missing: run `cargo build --workspace` first (cargo xtask test does)",
-        path.display()
-    );
-    path
+    if let Some(named) = std::env::var_os("KELIR_BIN") {
+        return named.into();
+    }
+    let this = std::env::current_exe().unwrap();
+    let built =
+        this.ancestors().skip(1).take(2).map(|folder| folder.join("kelir")).find(|path| path.is_file());
+    built.expect("kelir is missing: run `cargo build --workspace` first (cargo xtask test does)")
+}
+
+/// A port that nobody listens on.
+pub fn free_port() -> u16 {
+    std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
 /// Runs `kelir ARGS` to its end.
@@ -116,6 +122,11 @@ impl Server {
             assert!(begun.elapsed() < Duration::from_secs(900), "{path} did not answer");
             std::thread::sleep(Duration::from_millis(100));
         }
+    }
+
+    /// Its process.
+    pub fn id(&self) -> u32 {
+        self.child.id()
     }
 
     /// `kill -9`, at once.
@@ -309,14 +320,19 @@ pub fn edit(folder: &Path, file: &str, from: &str, to: &str) {
     std::fs::write(path, text.replace(from, to)).unwrap();
 }
 
-/// A data folder with the built-in study's stimuli, made once for the whole test run and copied for each test.
+/// A data folder with the built-in study's stimuli, of few samples, made once for the whole test run and copied for each test.
 pub fn prepared_data() -> tempfile::TempDir {
     static MADE: std::sync::OnceLock<PathBuf> = std::sync::OnceLock::new();
     let made = MADE.get_or_init(|| {
         // Beside the build, so that a test run cleans up after the one before it.
         let data = binary().parent().unwrap().parent().unwrap().join("tmp/e2e-data");
         let _ = std::fs::remove_dir_all(&data);
-        std::fs::create_dir_all(&data).unwrap();
+        std::fs::create_dir_all(data.join("studies")).unwrap();
+        // As it ships but for the samples of its reference, which take minutes: an animation is drawn at two sizes.
+        let shipped = std::fs::read_to_string(root().join("stimuli/studies/shadow-puppets.toml")).unwrap();
+        assert!(shipped.contains("spp = 1024"));
+        std::fs::write(data.join("studies/shadow-puppets.toml"), shipped.replace("spp = 1024", "spp = 16"))
+            .unwrap();
         let status = Server::start(&data, true).terminate();
         assert!(status.success(), "a server that is asked to stop ends well: {status}");
         data

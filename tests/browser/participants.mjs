@@ -1,5 +1,5 @@
 // Takes a study as people would: real clicks, taps and keys in Chromium.
-// Argument (JSON): {base, study, shots, participants: [{name, viewport, touch, input, choices, reloadAfter}]}.
+// Argument (JSON): {base, study, shots, participants: [{name, viewport, deviceScaleFactor, touch, input, choices, reloadAfter}]}.
 // Last line of output (JSON): per participant {name, code, trials: [{choice, left, right}], console: [...]}; left and right are hashes of pixels.
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -18,8 +18,8 @@ try {
 console.log(JSON.stringify(answers));
 
 /** One participant from the welcome to the code. */
-async function take({ name, viewport, touch, input, choices, reloadAfter }) {
-  const context = await browser.newContext({ viewport, hasTouch: touch, isMobile: touch });
+async function take({ name, viewport, deviceScaleFactor = 1, touch, input, choices, reloadAfter }) {
+  const context = await browser.newContext({ viewport, deviceScaleFactor, hasTouch: touch, isMobile: touch });
   const page = await context.newPage();
   const complaints = [];
   page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));

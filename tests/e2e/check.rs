@@ -94,6 +94,7 @@ fn a_redirect_holds_the_code_and_nothing_that_is_never_filled_in() {
     edit(data.path(), "studies/small.toml", good, "https://example.org/?cc=C1&room=[room]\"\ncode = \"C1");
     edit(data.path(), "studies/small.toml", "[texts]", "[session]\nparams = [\"room\"]\n[texts]");
     assert!(checked().contains(": good ("));
+    assert!(checked().contains("a participant downloads at 64 × 36: about 0."));
 }
 
 #[test]

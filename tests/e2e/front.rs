@@ -6,7 +6,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use kelir_tests::{Server, Taking, binary, edit, small_data, sql};
+use kelir_tests::{Server, Taking, binary, edit, free_port, small_data, sql};
 use serde_json::{Value, json};
 
 /// Connections that say nothing, or not enough.
@@ -48,10 +48,6 @@ fn start_by(line: &str, data: &Path, port: u16, log: Stdio) -> Child {
     let mut command = Command::new("sh");
     command.args(["-c", &serve]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(log);
     command.spawn().unwrap()
-}
-
-fn free_port() -> u16 {
-    std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
 /// Waits for the study and takes a trial of it.

@@ -24,7 +24,7 @@ fn three_participants_from_the_welcome_to_the_t_test() {
         "participants.mjs",
         &json!({"base": server.base, "study": STUDY, "shots": shots, "participants": [
             {"name": "ana", "viewport": desktop, "touch": false, "input": "mouse", "choices": ["left", "right", "right", "left", "left"]},
-            {"name": "budi", "viewport": phone, "touch": true, "input": "touch", "choices": ["right", "right", "left", "left", "right"]},
+            {"name": "budi", "viewport": phone, "deviceScaleFactor": 3, "touch": true, "input": "touch", "choices": ["right", "right", "left", "left", "right"]},
             {"name": "citra", "viewport": desktop, "touch": false, "input": "keyboard", "choices": ["left", "left", "left", "right", "left"], "reloadAfter": 2},
         ]}),
     );
@@ -42,6 +42,8 @@ fn three_participants_from_the_welcome_to_the_t_test() {
         "SELECT a.trial_index, json_extract(s.params, '$.PROLIFIC_PID') AS person, s.completion_code,
          json_extract(t.trial, '$.block_id') AS block_id,
          json_extract(a.row, '$[5].left.sha256') AS left_sha256, json_extract(a.row, '$[5].right.sha256') AS right_sha256,
+         (SELECT width FROM stimuli WHERE sha256 = json_extract(a.row, '$[5].left.sha256')) AS width,
+         (SELECT width FROM stimuli WHERE sha256 = json_extract(a.row, '$[5].right.sha256')) AS right_width,
          json_extract(a.row, '$[5].left.condition') AS left_condition, json_extract(a.row, '$[5].right.condition') AS right_condition,
          json_extract(c.answer, '$.choice') AS choice, json_extract(c.answer, '$.rt_ms') AS rt_ms,
          json_extract(a.row, '$[5].' || json_extract(c.answer, '$.choice') || '.condition') AS chosen_condition
@@ -55,6 +57,9 @@ fn three_participants_from_the_welcome_to_the_t_test() {
             assert_eq!(row["completion_code"], participant["code"]);
             assert_eq!(row["trial_index"], index);
             assert_eq!(row["choice"], trial["choice"]);
+            // A phone of three device pixels to a CSS pixel has room for the larger size.
+            let width = if participant["name"] == "budi" { 1110 } else { 592 };
+            assert_eq!((&row["width"], &row["right_width"]), (&json!(width), &json!(width)));
             for side in ["left", "right"] {
                 let pixels = pixels_of(data.path(), row[format!("{side}_sha256")].as_str().unwrap());
                 let seen = trial[side].as_str().unwrap().to_owned();

@@ -1,6 +1,7 @@
 //! Trying a study spoils nothing: a preview leaves no trace, a pilot is counted apart, and only who may tries.
 
 use std::path::Path;
+use std::process::Command;
 
 use kelir_tests::{Server, kelir_ok, small_data, sql};
 use serde_json::{Value, json};
@@ -20,13 +21,15 @@ fn begin(server: &Server, params: &Value) -> (u16, Value) {
     server.call("POST", "/api/v1/studies/small/sessions", None, &json!({ "params": params, "display": {} }))
 }
 
-/// Every row of every table that a visit could write to.
-fn stored(data: &Path) -> Vec<Value> {
-    let database = data.join("kelir.sqlite");
-    ["sessions", "session_trials", "answers"]
-        .iter()
-        .flat_map(|table| sql(&database, &format!("SELECT count(*) AS n FROM {table}")))
-        .collect()
+/// Everything that a visit could write to, as it stands in the database; but how browsers get their pictures, which is no visit's.
+fn stored(data: &Path) -> Vec<String> {
+    let shell = Command::new("sqlite3").arg(data.join("kelir.sqlite")).arg(".dump").output().unwrap();
+    assert!(shell.status.success(), "{}", String::from_utf8_lossy(&shell.stderr));
+    let dump = String::from_utf8(shell.stdout).unwrap();
+    let of_others =
+        ["packings", "researchers", "researcher_sessions"].map(|table| format!("INSERT INTO {table} "));
+    let rows = dump.lines().filter(|line| of_others.iter().all(|other| !line.starts_with(other)));
+    rows.map(str::to_owned).collect()
 }
 
 #[test]
@@ -62,9 +65,14 @@ fn a_preview_goes_to_its_end_and_stores_nothing() {
     assert_eq!((status, &end["redirect"]), (200, &Value::Null), "no panel is told: {end}");
     assert_eq!(server.call("GET", &at(""), Some("other"), &Value::Null).0, 401);
     assert_eq!(stored(&server.data), before);
-    // Negative control: a participant leaves rows.
+    // Negative controls: a participant leaves rows, and what is written over a row is seen too.
     assert_eq!(begin(&server, &json!({})).0, 201);
-    assert_ne!(stored(&server.data), before);
+    let begun = stored(&server.data);
+    assert_ne!(begun, before);
+    sql(&server.data.join("kelir.sqlite"), "UPDATE sessions SET last_seen_at = '2026-01-01T00:00:00.000Z'");
+    let touched = stored(&server.data);
+    assert_eq!(touched.len(), begun.len());
+    assert_ne!(touched, begun);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 8c296b101fc062225f9f83b5d5d70a6414cb37631f4e15bbc6277a7b6a395243 71b04b85b4a9c12b2b1ab6f9d00917b06b1f07377ad21f3bbb5084eea1699391
+// Generated from openapi.json by `npm run types`; do not edit. d035aa5fd935c5dd1cc65713ba25197040a7fbf8370b1c14b3a05a1a48790fcf a256f1146bb8826c0206de57374e9480ab8d0c9e5b0ef50312646b88470b0e66
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -199,7 +199,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Where a session stands; asking keeps its place in the design. */
+        /**
+         * Where a session stands; asking keeps its place in the design.
+         * @description Who comes back so late that somebody else has got that place, and has answered nothing yet, takes another one, with other trials.
+         */
         get: operations["get_session"];
         put?: never;
         post?: never;
@@ -719,6 +722,22 @@ export interface components {
         Answer: components["schemas"]["TwoAlternativeAnswer"] | components["schemas"]["TwoIntervalAnswer"];
         /** @description How the two pictures stood. */
         Arrangement: "side" | "stack" | "beside" | "below";
+        /** @description How even the design came out, among those who are judged. */
+        Balance: {
+            /**
+             * Format: int64
+             * @description Places in the design that more than one participant has completed: who came back late to a place that somebody else had got meanwhile is
+             *     kept, and counted here.
+             */
+            doubled_places: number;
+            /**
+             * Format: int64
+             * @description Items of blocks with a fixed plan that have answers.
+             */
+            items: number;
+            /** @description Items whose target did not come first in half of their answers, give or take the odd one. */
+            uneven: components["schemas"]["UnevenItem"][];
+        };
         /** @description What an exact binomial test says. */
         BinomialTest: {
             /**
@@ -2337,6 +2356,10 @@ export interface components {
         };
         /** @description Who is judged, and who is not. */
         Standing: {
+            /** @description How even the design came out. */
+            balance: components["schemas"]["Balance"];
+            /** @description The same in words; empty without answers. */
+            balance_summary: string;
             /** @description What was noticed of sessions, whether or not it leaves them out. */
             flagged: components["schemas"]["Flagged"][];
             /**
@@ -2976,6 +2999,23 @@ export interface components {
             restarts?: number | null;
             shown_frames?: components["schemas"]["StepFrames"] | null;
             shown_ms?: components["schemas"]["StepTimes"] | null;
+        };
+        /** @description An item that one order was judged of more often than the other. */
+        UnevenItem: {
+            /**
+             * Format: int64
+             * @description All answers.
+             */
+            answers: number;
+            /** @description Block's id. */
+            block: string;
+            /** @description Item's id. */
+            item: string;
+            /**
+             * Format: int64
+             * @description Answers in whose trial the target came first: on the left, above, or earlier.
+             */
+            target_first: number;
         };
         /** @description One page of the versions of a study. */
         VersionList: {
@@ -3887,7 +3927,10 @@ export interface operations {
     };
     get_session: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Number of answers that the page holds and has not sent yet: where there are any, the plan that they are of stays. */
+                unsent?: number;
+            };
             header?: never;
             path: {
                 /** @description The session's id. */
@@ -3904,6 +3947,18 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter";
+                    };
                 };
             };
             /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */

@@ -195,6 +195,7 @@ function leftOut(results: Results | null): Node[] {
     ...list(`${excluded.length} left out by your rules`, excluded.map(({ session_id, why }) => h("li", {}, session(session_id), `: ${why}`))),
     ...list(`${count(standing.repeated.length, "session")} of persons who had taken part before`, standing.repeated.map(({ session_id, counted }) => h("li", {}, session(session_id), ": ", session(counted), " counts"))),
     ...list("What was noticed of sessions", standing.flagged.map(({ flag, meaning, sessions, excludes }) => h("li", {}, h("code", {}, flag), `: ${count(sessions, "session")}, ${meaning}${excludes ? "; left out by your rules" : ""}`))),
+    ...(standing.balance_summary === "" ? [] : [h("p", { class: "quiet", "data-testid": "balance" }, standing.balance_summary)]),
   ];
 }
 

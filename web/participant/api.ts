@@ -41,7 +41,9 @@ export const fetchVisit = (study: string, search: string) => request<Schemas["Vi
 export const createSession = (study: string, body: Schemas["NewSession"], key: string) =>
   ask<Schemas["CreatedSession"]>(`${v1}/studies/${encodeURIComponent(study)}/sessions`, ["session_id", "token"], { method: "POST", body, headers: { "idempotency-key": key } });
 
-export const fetchState = (who: Credentials) => ask<State>(session(who.session_id), ["session_id", "trials"], { token: who.token });
+/** Where a session stands; while answers are unsent here, its plan stays. */
+export const fetchState = (who: Credentials, unsent: number) =>
+  ask<State>(`${session(who.session_id)}${unsent === 0 ? "" : `?unsent=${unsent}`}`, ["session_id", "trials"], { token: who.token });
 
 export const giveConsent = (who: Credentials) => ask<State>(`${session(who.session_id)}/consent`, ["session_id", "trials"], { method: "POST", token: who.token });
 

@@ -82,7 +82,7 @@ export class Session {
     if (this.#who === null) return null;
     const who = this.#who;
     try {
-      this.state = await persist(() => api.fetchState(who));
+      this.state = await persist(() => api.fetchState(who, this.outbox.waiting.length));
     } catch (error) {
       if (!(error instanceof Refused) || ![401, 403, 404, 410].includes(error.status)) throw error;
       this.#forget();
@@ -186,7 +186,7 @@ export class Session {
   /** Asks the server again: its word counts. */
   async refresh(): Promise<void> {
     const who = this.#known();
-    this.state = await persist(() => api.fetchState(who));
+    this.state = await persist(() => api.fetchState(who, this.outbox.waiting.length));
   }
 
   complete(): Promise<api.Completion> {

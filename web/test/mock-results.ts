@@ -81,6 +81,8 @@ const standing = (taken: boolean): Schemas["Standing"] => ({
   simulated: 0,
   with: [],
   flagged: taken ? [{ flag: "repeated_id", meaning: "the same id had begun the study before", sessions: 1, excludes: false }] : [],
+  balance: { items: taken ? 5 : 0, doubled_places: 0, uneven: [] },
+  balance_summary: taken ? "Of each item's judged answers the target came first in half, give or take the odd one." : "",
 });
 const excluded: Schemas["Excluded"][] = [
   { session_id: "01936d2e-5b1a-7c3e-9a53-0d4b1f2a6c11", reasons: [{ reason: "too_fast", trials: 4, allowed: 1 }, { reason: "straight_lining", trials: 5 }], why: "4 answers too fast, 1 allowed; the same side in all 5 trials", is_completed: true },

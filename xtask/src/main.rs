@@ -1,4 +1,4 @@
-//! Project tasks: `cargo xtask serve | test | bench | pictures`. Typed, no makefile beside it.
+//! Project tasks: `cargo xtask serve | test | bench | soak | pictures`. Typed, no makefile beside it.
 //!
 //! It depends on nothing that takes long to build: a fresh machine meets it first.
 
@@ -36,6 +36,12 @@ enum Task {
     Test,
     /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
     Bench,
+    /// Attack the release binary: kills, disorder, floods, hostile bytes, a full disk. About five minutes; `--seed`, `--rounds`, `--seconds` and others
+    /// are the attacks' own, as are their names (`cargo xtask soak --rounds 5 kill`).
+    Soak {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        options: Vec<String>,
+    },
     /// Make the README's pictures anew; the trial's and the report's come from the screenshots of the last `test`.
     Pictures,
 }
@@ -47,6 +53,7 @@ fn main() -> Result<()> {
         Task::Serve { data, listen } => serve(&data, &listen),
         Task::Test => test(),
         Task::Bench => bench(),
+        Task::Soak { options } => soak(&options),
         Task::Pictures => pictures(),
     }
 }
@@ -100,6 +107,15 @@ fn bench() -> Result<()> {
         step(name, command)?;
     }
     step("kernels", cargo(&["bench", "--package", "kelir-render"]))
+}
+
+/// The attacks of `tests/soak` on the release binary.
+fn soak(options: &[String]) -> Result<()> {
+    ensure(&[Need::Node, Need::Cxx, Need::Sqlite])?;
+    let kelir = release()?;
+    let mut attacks = cargo(&["run", "--quiet", "--package", "kelir-tests", "--bin", "soak", "--"]);
+    attacks.args(options).env("KELIR_BIN", kelir);
+    step("attacks", attacks)
 }
 
 /// The README's pictures, from the product itself.

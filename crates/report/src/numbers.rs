@@ -56,6 +56,8 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
         ("of persons who had taken part before (sessions)", report.standing.repeated.len() as u64),
         ("trial runs (sessions)", report.standing.pilots),
         ("simulated (sessions)", report.standing.simulated),
+        ("completed more than once (places)", report.standing.balance.doubled_places),
+        ("target not first in half of the answers (items)", report.standing.balance.uneven.len() as u64),
     ] {
         all.push(Rows::of(Sample::Screened, "", "participants").whole(statistic, value));
     }

@@ -90,6 +90,10 @@ fn participants(report: &StudyReport) -> Section {
         )));
     }
     pieces.extend(flagged(report));
+    let balance = &report.standing.balance_summary;
+    if !balance.is_empty() {
+        pieces.push(Piece::Text(balance.clone()));
+    }
     Section::new("Participants", pieces)
 }
 

@@ -2,8 +2,9 @@
 
 use crate::format::count;
 use crate::{Participants, PooledVersion};
+use kelir_study::StudyDefinition;
 use kelir_study::screening::Exclusion;
-use kelir_study::visits::{Flag, Judged, LeftOut, Repeated, SessionKind, Visit};
+use kelir_study::visits::{Balance, Flag, Judged, LeftOut, Repeated, SessionKind, Visit};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -50,11 +51,15 @@ pub struct Standing {
     pub with: Vec<SessionKind>,
     /// What was noticed of sessions, whether or not it leaves them out.
     pub flagged: Vec<Flagged>,
+    /// How even the design came out.
+    pub balance: Balance,
+    /// The same in words; empty without answers.
+    pub balance_summary: String,
 }
 
 impl Standing {
-    /// Of these sessions, judged; `excludes` are the flags by which the study's rules leave out.
-    pub fn of(judged: &Judged<'_>, with: &[SessionKind], excludes: &[Flag]) -> Standing {
+    /// Of these sessions, judged.
+    pub fn of(study: &StudyDefinition, judged: &Judged<'_>, with: &[SessionKind]) -> Standing {
         let kind = |wanted: SessionKind| {
             let of_kind =
                 |(_, why): &&(&Visit, LeftOut)| matches!(why, LeftOut::Kind(kind) if *kind == wanted);
@@ -64,12 +69,13 @@ impl Standing {
             flag: *flag,
             meaning: flag.meaning().to_owned(),
             sessions: judged.flags.values().filter(|flags| flags.contains(flag)).count() as u64,
-            excludes: excludes.contains(flag),
+            excludes: study.screening.flags.contains(flag),
         });
         let repeated = judged.left_out.iter().filter_map(|(_, why)| match why {
             LeftOut::Repeated(repeated) => Some(repeated.clone()),
             _ => None,
         });
+        let balance = Balance::of(study, judged);
         Standing {
             summary: String::new(),
             judged: judged.judged.len() as u64,
@@ -78,6 +84,8 @@ impl Standing {
             simulated: kind(SessionKind::Simulated),
             with: with.to_vec(),
             flagged: flagged.filter(|flagged| flagged.sessions > 0).collect(),
+            balance_summary: in_words(&balance),
+            balance,
         }
     }
 
@@ -151,6 +159,36 @@ impl Standing {
     }
 }
 
+/// What a balance comes to.
+fn in_words(balance: &Balance) -> String {
+    let mut sentences = Vec::new();
+    let worst =
+        balance.uneven.iter().max_by_key(|item| item.target_first.abs_diff(item.answers - item.target_first));
+    match worst {
+        _ if balance.items == 0 => {}
+        None => sentences.push("Of each item's judged answers the target came first in half, give or take the odd one.".to_owned()),
+        Some(worst) => sentences.push(format!(
+            "The target came first more often or more seldom than second in {} of {}; farthest from half is {}, with {} of {}.",
+            balance.uneven.len(),
+            count(balance.items, "item"),
+            worst.item,
+            worst.target_first,
+            count(worst.answers, "answer"),
+        )),
+    }
+    match balance.doubled_places {
+        0 => {}
+        1 => sentences.push(
+            "1 place in the design was completed by more than one participant; all of them count here."
+                .to_owned(),
+        ),
+        n => sentences.push(format!(
+            "{n} places in the design were completed by more than one participant; all of them count here."
+        )),
+    }
+    sentences.join(" ")
+}
+
 impl Excluded {
     /// Somebody whom the study's rules leave out.
     pub fn new(session_id: impl Into<String>, reasons: Vec<Exclusion>, is_completed: bool) -> Excluded {
@@ -162,6 +200,7 @@ impl Excluded {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use kelir_study::visits::UnevenItem;
 
     fn said(
         started: u64,
@@ -197,6 +236,28 @@ mod tests {
         assert_eq!(
             said(3, 0, 3, &repeats, &[]),
             "3 completed, 1 judged. 2 sessions of persons who had taken part before are left out. 3 simulated sessions are left out."
+        );
+    }
+
+    #[test]
+    fn a_balance_is_told_by_what_was_counted() {
+        assert_eq!(in_words(&Balance::default()), "");
+        let even = Balance { items: 3, ..Balance::default() };
+        assert_eq!(
+            in_words(&even),
+            "Of each item's judged answers the target came first in half, give or take the odd one."
+        );
+        let uneven = |item: &str, target_first| UnevenItem {
+            block: "b".into(),
+            item: item.into(),
+            target_first,
+            answers: 8,
+        };
+        let uneven = Balance { doubled_places: 1, uneven: vec![uneven("x", 5), uneven("y", 2)], ..even };
+        assert_eq!(
+            in_words(&uneven),
+            "The target came first more often or more seldom than second in 2 of 3 items; farthest from half is y, with 2 of 8 answers. \
+             1 place in the design was completed by more than one participant; all of them count here."
         );
     }
 

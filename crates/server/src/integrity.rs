@@ -5,7 +5,7 @@
 use crate::app::{App, LoadedStudy, Served, Stimuli};
 use crate::audit::AUDIT;
 use crate::making;
-use kelir_store::{ANIMATION, StoreError};
+use kelir_store::{ANIMATION, StoreError, Trouble};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -71,6 +71,9 @@ pub(crate) async fn look(app: &App) {
 async fn of_database(app: &App) -> Vec<String> {
     match app.store.quick_check().await {
         Ok(faults) => faults.into_iter().map(|fault| format!("The database is damaged: {fault}")).collect(),
+        Err(error) if error.as_trouble() == Some(Trouble::Damaged) => {
+            vec![format!("The database is damaged: {error}")]
+        }
         Err(error) => vec![format!("The database cannot be checked: {error}")],
     }
 }

@@ -19,7 +19,7 @@ const MOST_BYTES: usize = 64 << 20;
 /// Most addresses that are held in memory; one that is not is found again from its session.
 const MOST_ADDRESSES: usize = 200_000;
 /// Length of what is a session's own at the end of its bytes.
-const TAIL: usize = 32;
+pub(crate) const TAIL: usize = 32;
 
 /// The session, or the preview, that is told.
 #[derive(Clone, Copy, Debug)]

@@ -84,11 +84,13 @@ pub(crate) fn rehearse(task: &Task<'_>, scene: Scene) -> (Scene, Result<(), Rend
     }
 }
 
-/// How many pictures there are in all, and the files of one or two of them.
+/// How many pictures there are in all, and the files of some of them.
 type Sample = (usize, Vec<Vec<u8>>);
 
-/// How many pictures a task has, and one of them as it will be made; of a film two that follow each other, from its middle. The scene comes back
-/// for the next.
+/// Where in a film pictures are taken, as parts of it: not evenly, or they could all lie where a swing turns round.
+const PLACES: [f64; 3] = [0.11, 0.37, 0.71];
+
+/// How many pictures a task has, and its picture as it will be made; of a film pairs that follow each other. The scene comes back for the next.
 pub(crate) fn sample(task: &Task<'_>, scene: Scene) -> (Scene, Result<Sample, String>) {
     let mut job = match job(task) {
         Ok(job) => job.with_scene(scene),
@@ -98,15 +100,21 @@ pub(crate) fn sample(task: &Task<'_>, scene: Scene) -> (Scene, Result<Sample, St
         (Output::Animation, Some(timeline)) => timeline.frame_count(),
         _ => 1,
     };
-    let drawn = two(&mut job, frames / 2, frames.min(2)).map_err(|error| error.to_string());
+    let at = |place: f64| ((frames - 1) as f64 * place) as usize;
+    let indices = if frames < 2 {
+        vec![0]
+    } else {
+        PLACES.iter().flat_map(|place| [at(*place), at(*place) + 1]).collect()
+    };
+    let drawn = files(&mut job, &indices).map_err(|error| error.to_string());
     (job.scene, drawn.map(|pictures| (frames, pictures)))
 }
 
-fn two(job: &mut Job, last: usize, count: usize) -> Result<Vec<Vec<u8>>, RenderError> {
+fn files(job: &mut Job, indices: &[usize]) -> Result<Vec<Vec<u8>>, RenderError> {
     let mut drawing = Drawing::open(job)?;
-    let mut pictures = Vec::with_capacity(count);
-    for index in (last + 1 - count)..=last {
-        drawing.frame(index)?;
+    let mut pictures = Vec::with_capacity(indices.len());
+    for index in indices {
+        drawing.frame(*index)?;
         pictures.push(drawing.file()?.bytes);
     }
     Ok(pictures)

@@ -126,7 +126,7 @@ pub(crate) fn counted(people: kelir_store::Participants) -> Participants {
 }
 
 fn standing(selection: &Selection, judged: &Judged<'_>) -> Standing {
-    Standing::of(judged, &selection.include.0, &selection.study.screening.flags)
+    Standing::of(&selection.study, judged, &selection.include.0)
 }
 
 fn stimulus(shown: StudyStimulus) -> Stimulus {

@@ -1,10 +1,11 @@
-//! How much a participant downloads of each block: of its stills all, of its films an estimate from two frames.
+//! How much a participant downloads of each block: of its stills all, of its films an estimate from some of their frames.
 
 use crate::library::{Library, beside};
 use crate::making::{Task, tasks};
+use crate::presenting::TAIL;
 use crate::render;
 use kelir_scene::Scene;
-use kelir_store::packed_bytes;
+use kelir_store::{packed_bytes, step_bytes};
 use kelir_study::{Condition, Kind, StudyDefinition};
 use std::collections::BTreeMap;
 
@@ -55,7 +56,7 @@ pub(crate) fn weights(library: &Library, file: &str, study: &StudyDefinition) ->
     for ((_, rank), (block, bytes)) in longest {
         let size = study.sizes().get(rank);
         let own = weights.iter_mut().find(|weight| weight.block == block && Some(&weight.size) == size);
-        own.into_iter().for_each(|weight| weight.bytes += 2 * bytes);
+        own.into_iter().for_each(|weight| weight.bytes += 2 * (bytes + TAIL as u64));
     }
     Ok(weights)
 }
@@ -68,7 +69,7 @@ fn of_files(library: &Library, file: &str, task: &Task<'_>) -> Result<Weighed, S
     let paths = files.get(&task.pair.id).map(|pictures| pictures.paths()).unwrap_or_default();
     let of = |path: &String| {
         let bytes = library.read(&beside(file, path)).map_err(|error| format!("{path}: {error}"))?;
-        Ok((packed_bytes(&bytes, None)?[0], true))
+        Ok((packed_bytes(&bytes)?, true))
     };
     paths.iter().map(of).collect()
 }
@@ -89,8 +90,10 @@ fn of_drawn(
     scenes.insert(path, scene);
     let (frames, pictures) = drawn?;
     let first = pictures.first().ok_or("nothing was drawn")?;
-    let [picture, step] = packed_bytes(first, pictures.get(1).map(Vec::as_slice))?;
-    let smallest = picture + step * (frames as u64).saturating_sub(1);
+    let steps: Vec<u64> =
+        pictures.chunks_exact(2).map(|pair| step_bytes(&pair[0], &pair[1])).collect::<Result<_, _>>()?;
+    let step = steps.iter().sum::<u64>() / steps.len().max(1) as u64;
+    let smallest = packed_bytes(first)? + step * (frames as u64).saturating_sub(1);
     let pixels = |[w, h]: [u32; 2]| f64::from(w) * f64::from(h);
     let of_size = |size: &[u32; 2]| {
         let bytes = smallest as f64 * pixels(*size) / pixels(task.size).max(1.0);

@@ -82,6 +82,20 @@ impl Trouble {
         }
     }
 
+    /// What whoever meets it can do.
+    pub fn advice(self) -> &'static str {
+        match self {
+            Trouble::Full | Trouble::Locked | Trouble::ReadOnly | Trouble::Failing => {
+                "Please try again shortly."
+            }
+            Trouble::Damaged => {
+                "Nothing that is whole is lost by waiting, and trying again does not mend it. Researchers: keep a copy of the data folder, then put a \
+                 backup in its place or let sqlite3's .recover read what can be read; the console says what is damaged, and kelir chain check afterwards \
+                 whether every answer is there."
+            }
+        }
+    }
+
     /// What a result code of SQLite's means, extended or not.
     fn of_code(code: i32) -> Option<Trouble> {
         use rusqlite::ffi;
@@ -128,6 +142,31 @@ impl StoreError {
             }
             _ => None,
         }
+    }
+
+    /// What to tell whoever asked: the trouble that this is, or that what is stored cannot be read, which is one job's and no reason to refuse
+    /// others.
+    pub fn as_told(&self) -> Option<Trouble> {
+        let unreadable = match self {
+            StoreError::Corrupt { .. } => true,
+            StoreError::Sqlite(error) => {
+                use rusqlite::Error::{
+                    FromSqlConversionFailure, IntegralValueOutOfRange, InvalidColumnType, Utf8Error,
+                };
+                matches!(
+                    error,
+                    FromSqlConversionFailure(..)
+                        | IntegralValueOutOfRange(..)
+                        | InvalidColumnType(..)
+                        | Utf8Error(..)
+                )
+            }
+            StoreError::Database(error) => {
+                matches!(error, sqlx::Error::ColumnDecode { .. } | sqlx::Error::Decode(_))
+            }
+            _ => false,
+        };
+        self.as_trouble().or(unreadable.then_some(Trouble::Damaged))
     }
 
     pub(crate) fn trouble(trouble: Trouble, message: impl ToString) -> Self {

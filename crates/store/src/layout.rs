@@ -7,7 +7,7 @@ use rusqlite::{Connection, TransactionBehavior, params};
 use sha2::{Digest, Sha384};
 
 /// Applied migrations never change; a new one is a new line.
-const MIGRATIONS: [(i64, &str, &str); 8] = [
+const MIGRATIONS: [(i64, &str, &str); 9] = [
     (1, "first", include_str!("../../../migrations/sqlite/0001_first.sql")),
     (2, "sessions counted", include_str!("../../../migrations/sqlite/0002_sessions_counted.sql")),
     (
@@ -20,6 +20,7 @@ const MIGRATIONS: [(i64, &str, &str); 8] = [
     (6, "packings", include_str!("../../../migrations/sqlite/0006_packings.sql")),
     (7, "persons", include_str!("../../../migrations/sqlite/0007_persons.sql")),
     (8, "sizes", include_str!("../../../migrations/sqlite/0008_sizes.sql")),
+    (9, "late return", include_str!("../../../migrations/sqlite/0009_late_return.sql")),
 ];
 
 /// As sqlx makes it: data folders of before have it.

@@ -42,7 +42,7 @@ pub use files::sha256_hex;
 pub use first_chain::GENESIS;
 pub use import::ImportedSession;
 pub use lock::FolderLock;
-pub use packing::{PACKED, packed_bytes};
+pub use packing::{PACKED, packed_bytes, step_bytes};
 pub use packings::Packing;
 pub use persons::Begun;
 pub use pixels::picture_size;

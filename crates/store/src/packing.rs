@@ -77,18 +77,21 @@ pub(crate) fn pack(
     joined(size, (manifest.fps, manifest.repeat), frames, pictures)
 }
 
-/// How many bytes a picture takes when it is packed, and the step from it to a next one.
+/// How many bytes a still takes when it is packed.
 ///
 /// # Errors
-/// Why they cannot be packed, as a sentence's end.
-pub fn packed_bytes(picture: &[u8], next: Option<&[u8]>) -> Result<[u64; 2], String> {
-    let (image, profile) = pixels::decode(picture)?;
-    let image = image.into_rgba8();
-    let step = match next {
-        None => 0,
-        Some(next) => webp(&step(&image, &pixels::decode(next)?.0.into_rgba8())?, None)?.len(),
-    };
-    Ok([webp(&image, profile)?.len() as u64, step as u64])
+/// Why it cannot be packed, as a sentence's end.
+pub fn packed_bytes(picture: &[u8]) -> Result<u64, String> {
+    Ok(pack("", picture, &|_| None)?.len() as u64)
+}
+
+/// How many bytes the step takes from one picture of an animation to the next.
+///
+/// # Errors
+/// Why it cannot be packed, as a sentence's end.
+pub fn step_bytes(before: &[u8], after: &[u8]) -> Result<u64, String> {
+    let [before, after] = [pixels::decode(before)?.0.into_rgba8(), pixels::decode(after)?.0.into_rgba8()];
+    Ok(webp(&step(&before, &after)?, None)?.len() as u64)
 }
 
 /// From `before` to `after`: what is brighter above what is darker.

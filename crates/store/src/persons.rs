@@ -100,7 +100,8 @@ impl Store {
         let versions = serde_json::to_string(versions).map_err(|e| StoreError::corrupt("versions", e))?;
         let read = self.readers.read(move |connection| {
             let mut statement = connection.prepare(
-                "SELECT session_id, subject_id, kind, flags, consented_at, completed_at, completed_at IS NULL AND last_seen_at > ?3
+                "SELECT session_id, subject_id, kind, flags, consented_at, completed_at, completed_at IS NULL AND last_seen_at > ?3,
+                 version, slot
                  FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id",
             )?;
             let visits = statement.query_map((study_id, versions, clock::before_now(idle)), read_visit)?;
@@ -123,5 +124,7 @@ fn read_visit(row: &rusqlite::Row<'_>) -> Result<Visit, rusqlite::Error> {
         consented_us: time(row.get(4)?),
         completed_us: time(row.get(5)?),
         is_active: row.get(6)?,
+        version: row.get(7)?,
+        slot: row.get(8)?,
     })
 }

@@ -156,7 +156,7 @@ pub(crate) fn decided(
     Ok(trials)
 }
 
-/// Takes the plan of a session away that has no consent yet; the database refuses for any other.
+/// Takes the plan of a session away that has no answer yet; the database refuses for any other.
 pub(crate) fn forget_trials(writer: &Connection, session_id: &str) -> Result<(), StoreError> {
     writer.execute("DELETE FROM session_trials WHERE session_id = ?1", [session_id])?;
     Ok(())

@@ -160,7 +160,7 @@ impl Store {
             .await
     }
 
-    /// Notes that the session is alive, which keeps its slot.
+    /// Notes that the session is alive, which keeps its slot, whoever else has it.
     ///
     /// # Errors
     /// The database fails.
@@ -175,8 +175,22 @@ impl Store {
         .await
     }
 
-    /// Notes that the participant agreed to the text of this hash; the first time counts. Nothing has been shown before that: who was silent for
-    /// so long that somebody else has their slot gets a new one, with the plan that `plan` has for it.
+    /// Takes a session up again. Who has answered nothing and was silent for so long that somebody else has their slot gets a new one, with the
+    /// plan that `plan` has for it; any other keeps its own.
+    ///
+    /// # Errors
+    /// The database fails or has no such session, or `plan` fails; nothing is stored.
+    pub async fn resume<E: From<StoreError> + Send + 'static>(
+        &self,
+        session: &Session,
+        idle: Duration,
+        plan: impl FnOnce(u32) -> Result<PlannedSession, E> + Send + 'static,
+    ) -> Result<Session, E> {
+        let session_id = session.session_id.clone();
+        self.write_or(move |writer| come_back(writer, &session_id, None, idle, plan)).await
+    }
+
+    /// Notes that the participant agreed to the text of this hash; the first time counts. Otherwise as [`Store::resume`].
     ///
     /// # Errors
     /// The database fails or has no such session, or `plan` fails; nothing is stored.
@@ -188,7 +202,7 @@ impl Store {
         plan: impl FnOnce(u32) -> Result<PlannedSession, E> + Send + 'static,
     ) -> Result<Session, E> {
         let (session_id, consent_sha256) = (session.session_id.clone(), consent_sha256.to_owned());
-        self.write_or(move |writer| consent(writer, &session_id, &consent_sha256, idle, plan)).await
+        self.write_or(move |writer| come_back(writer, &session_id, Some(consent_sha256), idle, plan)).await
     }
 
     /// Indices of the trials that have an answer, ascending.
@@ -292,19 +306,20 @@ fn create<E>(
     Ok(Begun::New(session))
 }
 
-fn consent<E>(
+/// Somebody is back, perhaps with consent to the text of a hash.
+fn come_back<E>(
     writer: &Connection,
     session_id: &str,
-    consent_sha256: &str,
+    consent_sha256: Option<String>,
     idle: Duration,
     plan: impl FnOnce(u32) -> Result<PlannedSession, E>,
 ) -> Result<Session, Refused<E>> {
     let gone = || StoreError::corrupt("session", "there is none of this id");
     let mut known = session(writer, session_id)?.ok_or_else(gone)?;
     let now = clock::now();
-    if known.consented_at.is_none() {
+    if known.kind == SessionKind::Participant && known.completed_at.is_none() {
         let slots = Slots { writer, study_id: &known.study_id, version: &known.version, idle };
-        if known.kind == SessionKind::Participant && slots.is_held_beside(known.slot, session_id)? {
+        if slots.is_held_beside(known.slot, session_id)? && answered(writer, session_id)?.is_empty() {
             let slot = slots.lowest_free()?;
             let planned = plan(slot).map_err(Refused::Caller)?;
             slots.take(slot, &now)?;
@@ -312,24 +327,18 @@ fn consent<E>(
             insert_trials(writer, session_id, &planned.next.trials, &now, 0)?;
             (known.slot, known.plan_seed, known.more) = (slot, planned.seed, planned.next.more);
         }
+    }
+    if let Some(consent_sha256) = consent_sha256.filter(|_| known.consented_at.is_none()) {
         known.consented_at = Some(now.clone());
-        known.consent_sha256 = Some(consent_sha256.to_owned());
+        known.consent_sha256 = Some(consent_sha256);
     }
     known.last_seen_at = now;
-    let mut consent = writer.prepare_cached(
+    let mut back = writer.prepare_cached(
         "UPDATE sessions SET slot = ?2, plan_seed = ?3, more = ?4, consented_at = ?5, consent_sha256 = ?6, last_seen_at = ?7
          WHERE session_id = ?1",
     )?;
     let Session { slot, plan_seed, more, consented_at, consent_sha256, last_seen_at, .. } = &known;
-    consent.execute(params![
-        session_id,
-        slot,
-        plan_seed,
-        more,
-        consented_at,
-        consent_sha256,
-        last_seen_at
-    ])?;
+    back.execute(params![session_id, slot, plan_seed, more, consented_at, consent_sha256, last_seen_at])?;
     Ok(known)
 }
 

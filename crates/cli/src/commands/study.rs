@@ -6,6 +6,7 @@ use anyhow::Result;
 use kelir_server::links::{Links, Visit, now};
 use kelir_server::shipped::{Shipped, is_file};
 use kelir_server::{HEAVY_BYTES, Library, StudyFileError, Weight, library_of, results};
+use kelir_study::Problem;
 use serde_json::json;
 
 use super::checked::{Checked, problem_json};
@@ -148,31 +149,54 @@ fn weight_json(weight: &Weight) -> serde_json::Value {
     json!({ "block": block, "size": size, "bytes": bytes, "is_exact": is_exact })
 }
 
-/// What a participant downloads, block by block and in all, at each size; what is heavy is said.
-fn weights_text(weights: &[Weight], sizes: &[[u32; 2]]) -> String {
-    let megabytes = |bytes: u64, is_exact: bool| {
-        format!("{}{:.2} MB", if is_exact { "" } else { "about " }, bytes as f64 / 1e6)
+/// What a participant downloads in all at one size, and whether that was counted.
+struct Total {
+    size: [u32; 2],
+    bytes: u64,
+    is_exact: bool,
+}
+
+fn totals(weights: &[Weight], sizes: &[[u32; 2]]) -> Vec<Total> {
+    let of = |size: &[u32; 2]| {
+        let of_size = || weights.iter().filter(|weight| weight.size == *size);
+        let bytes = of_size().map(|weight| weight.bytes).sum();
+        Total { size: *size, bytes, is_exact: of_size().all(|weight| weight.is_exact) }
     };
-    let mut lines = Vec::new();
-    for size @ [width, height] in sizes {
-        let of_size: Vec<&Weight> = weights.iter().filter(|weight| weight.size == *size).collect();
-        let all = of_size.iter().map(|weight| weight.bytes).sum();
-        let blocks: Vec<String> =
-            of_size.iter().map(|w| format!("{} {}", w.block, megabytes(w.bytes, w.is_exact))).collect();
-        let is_exact = of_size.iter().all(|weight| weight.is_exact);
-        lines.push(format!(
-            "  a participant downloads at {width} × {height}: {} ({})",
-            megabytes(all, is_exact),
-            blocks.join(", ")
-        ));
-        if all > HEAVY_BYTES {
-            lines.push(format!(
-                "  that is heavy: above {} a slow line (1.6 Mbit/s) takes more than half a minute; fewer or shorter animations, or a smaller size, weigh less",
-                megabytes(HEAVY_BYTES, true)
-            ));
+    sizes.iter().map(of).collect()
+}
+
+fn megabytes(bytes: u64, is_exact: bool) -> String {
+    format!("{}{:.2} MB", if is_exact { "" } else { "about " }, bytes as f64 / 1e6)
+}
+
+/// Sizes at which people on a slow line wait.
+fn heavy(file: &str, totals: &[Total]) -> Vec<Problem> {
+    let warning = |total: &Total| {
+        let [width, height] = total.size;
+        let (weight, bound) = (megabytes(total.bytes, total.is_exact), megabytes(HEAVY_BYTES, true));
+        Problem {
+            file: file.to_owned(),
+            field: "size".to_owned(),
+            value: Some(format!("[{width}, {height}]")),
+            rule: format!(
+                "a participant downloads {weight} at this size; above {bound} a slow line (1.6 Mbit/s) takes more than half a minute"
+            ),
         }
-    }
-    lines.join("\n")
+    };
+    totals.iter().filter(|total| total.bytes > HEAVY_BYTES).map(warning).collect()
+}
+
+/// What a participant downloads at each size, in all and block by block.
+fn weights_text(weights: &[Weight], totals: &[Total]) -> String {
+    let line = |total: &Total| {
+        let [width, height] = total.size;
+        let own = weights.iter().filter(|weight| weight.size == total.size);
+        let blocks: Vec<String> =
+            own.map(|w| format!("{} {}", w.block, megabytes(w.bytes, w.is_exact))).collect();
+        let all = megabytes(total.bytes, total.is_exact);
+        format!("  a participant downloads at {width} × {height}: {all} ({})", blocks.join(", "))
+    };
+    totals.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 fn check(files: &[PathBuf], json: bool) -> Result<()> {
@@ -203,9 +227,12 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
                     "design_hash": study.design_hash(), "weights": weights.iter().map(weight_json).collect::<Vec<_>>(),
                     "heavy_bytes": HEAVY_BYTES });
                 let details = format!("blocks: {blocks}, trials: {most}{trials}");
-                checked.good(file, &details, about, &study.warnings(&file.display().to_string()))?;
+                let name = file.display().to_string();
+                let totals = totals(&weights, study.sizes());
+                let warnings = [study.warnings(&name), heavy(&name, &totals)].concat();
+                checked.good(file, &details, about, &warnings)?;
                 if !json {
-                    print(&weights_text(&weights, study.sizes()))?;
+                    print(&weights_text(&weights, &totals))?;
                 }
             }
             Err(StudyFileError::Invalid(errors)) => {
@@ -215,4 +242,34 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
         }
     }
     checked.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_heavy_is_said_at_the_size_at_which_it_is() {
+        let weight =
+            |block: &str, size, bytes, is_exact| Weight { block: block.to_owned(), size, bytes, is_exact };
+        let (small, large) = ([592, 333], [1110, 624]);
+        let weights = [
+            weight("stills", small, 2_000_000, true),
+            weight("stills", large, 2_500_000, true),
+            weight("loop", small, 4_000_000, true),
+            weight("loop", large, 3_500_001, false),
+        ];
+        let totals = totals(&weights, &[small, large]);
+        let text = weights_text(&weights, &totals);
+        assert_eq!(
+            text.lines().collect::<Vec<_>>(),
+            [
+                "  a participant downloads at 592 × 333: 6.00 MB (stills 2.00 MB, loop 4.00 MB)",
+                "  a participant downloads at 1110 × 624: about 6.00 MB (stills 2.50 MB, loop about 3.50 MB)"
+            ]
+        );
+        let [heavy] = &heavy("f.toml", &totals)[..] else { panic!("the larger size alone") };
+        assert_eq!(heavy.value.as_deref(), Some("[1110, 624]"));
+        assert!(heavy.rule.contains("about 6.00 MB") && heavy.rule.contains("above 6.00 MB"), "{heavy}");
+    }
 }

@@ -18,7 +18,7 @@ pub use links::{Link, NewLink, Trying, VisitKind};
 pub use lists::ListQuery;
 pub use problem::{Problem, ProblemCode, StoredAnswer};
 pub use sessions::{
-    Acknowledgement, Completion, CreatedSession, Known, NewSession, SessionState, SessionStatus,
+    Acknowledgement, Completion, CreatedSession, Held, Known, NewSession, SessionState, SessionStatus,
     SizedStimuli, StimulusRef, Trial,
 };
 pub use studies::{

@@ -219,9 +219,9 @@ impl Problem {
 
 impl From<StoreError> for Box<Problem> {
     fn from(error: StoreError) -> Self {
-        let Some(trouble) = error.as_trouble() else { return Problem::internal(error) };
+        let Some(trouble) = error.as_told() else { return Problem::internal(error) };
         tracing::error!("{error}");
-        let detail = format!("{} Please try again shortly.", trouble.sentence());
+        let detail = format!("{} {}", trouble.sentence(), trouble.advice());
         Problem::new(ProblemCode::Unavailable, detail).retry_after(RETRY_AFTER_S)
     }
 }
@@ -259,11 +259,20 @@ mod tests {
             let error = StoreError::Trouble { trouble, message: "a path of the server".to_owned() };
             let problem = Box::<Problem>::from(error);
             assert!(problem.detail.starts_with(trouble.sentence()), "{}", problem.detail);
+            assert!(problem.detail.ends_with(trouble.advice()), "{}", problem.detail);
             assert!(!problem.detail.contains("path"), "{}", problem.detail);
             let response = problem.into_response();
             assert_eq!(response.status(), StatusCode::SERVICE_UNAVAILABLE);
             assert_eq!(response.headers()[header::RETRY_AFTER], "10");
         }
+        let unreadable = StoreError::Corrupt { what: "trial", message: "a secret".to_owned() };
+        let problem = Box::<Problem>::from(unreadable);
+        assert_eq!(problem.code, ProblemCode::Unavailable);
+        assert!(
+            problem.detail.contains("is damaged") && !problem.detail.contains("secret"),
+            "{}",
+            problem.detail
+        );
         let other = Box::<Problem>::from(StoreError::Migrate("x".to_owned()));
         assert_eq!(other.into_response().status(), StatusCode::INTERNAL_SERVER_ERROR);
     }

@@ -155,6 +155,14 @@ pub struct Known {
     pub known: Option<usize>,
 }
 
+/// What a page that comes back holds.
+#[derive(Clone, Copy, Debug, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Held {
+    /// Number of answers that the page holds and has not sent yet: where there are any, the plan that they are of stays.
+    pub unsent: Option<usize>,
+}
+
 /// That an answer is on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Acknowledgement {

@@ -5,7 +5,7 @@ use super::{Answered, Fresh, links, previews};
 use crate::address::ClientAddress;
 use crate::api;
 use crate::api::{
-    Acknowledgement, Answer, Completion, CreatedSession, Known, NewSession, Problem, ProblemCode,
+    Acknowledgement, Answer, Completion, CreatedSession, Held, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, Trial, refusals,
 };
 use crate::app::{App, idle};
@@ -189,17 +189,28 @@ pub(super) fn planned(
 }
 
 refusals!(NoSession: Unauthorized, NotFound);
+refusals!(NoState: Unauthorized, NotFound, InvalidParameter);
 
 /// Where a session stands; asking keeps its place in the design.
+///
+/// Who comes back so late that somebody else has got that place, and has answered nothing yet, takes another one, with other trials.
 #[utoipa::path(
-    get, path = "/api/v1/sessions/{session}", tag = "participants", security(("session" = [])), params(SessionPath),
-    responses((status = OK, description = "The session.", body = SessionState), NoSession)
+    get, path = "/api/v1/sessions/{session}", tag = "participants", security(("session" = [])), params(SessionPath, Held),
+    responses((status = OK, description = "The session.", body = SessionState), NoState)
 )]
 pub(crate) async fn get_session(
     Participant(session): Participant,
     State(app): State<Arc<App>>,
+    Query(held): Query<Held>,
 ) -> Answered<SessionState> {
-    app.store.touch_session(&session.session_id).await?;
+    if held.unsent.unwrap_or_default() > 0 {
+        app.store.touch_session(&session.session_id).await?;
+        return Ok(Fresh(state_of(&app, &session).await?));
+    }
+    let crate::app::Begun { study, stimuli } = app.begun(&session).await?;
+    let idle = idle(&study);
+    let plan = move |slot| plan_of(&study, &stimuli, slot);
+    let session = app.store.resume(&session, idle, plan).await?;
     Ok(Fresh(state_of(&app, &session).await?))
 }
 

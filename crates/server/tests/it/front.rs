@@ -227,28 +227,39 @@ async fn damaged_stimuli_are_made_again_or_the_study_pauses_and_answers_are_take
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_damaged_database_is_seen() {
+async fn a_damaged_database_is_seen_and_said_and_answers_are_taken() {
     let client = Client::ready().await;
     for who in 0..40 {
         client.take(json!({ "PROLIFIC_PID": format!("p{who}") }), ["left", "left", "right"]).await;
     }
+    let cookie = client.sign_in().await;
+    let results = "/api/v1/studies/shadow-puppets/versions/current/results";
+    assert_eq!(client.research(&cookie, results).await.status, StatusCode::OK);
     assert_eq!(client.server.check_integrity().await, Vec::<String>::new());
     client.server.store().close().await;
     let database = client.folder.path().join("kelir.sqlite");
     let mut bytes = std::fs::read(&database).unwrap();
-    // Pages of the middle: the first ones hold the layout.
-    let middle = bytes.len() / 2 / 4096 * 4096;
-    bytes[middle..middle + 3 * 4096].fill(0x5a);
+    // A page from the middle of what was answered: later answers go behind it.
+    let answered = b"{\"choice\":\"";
+    let places = bytes.windows(answered.len()).enumerate().filter(|(_, window)| window == answered);
+    let places: Vec<usize> = places.map(|(at, _)| at / 4096).collect();
+    let page = places[places.len() / 2];
+    assert!(places[0] < page && page < places[places.len() - 1], "{places:?}");
+    bytes[page * 4096..(page + 1) * 4096].fill(0x5a);
     std::fs::write(&database, bytes).unwrap();
-    let server = Server::open(&config(client.folder.path(), client.drawer.clone())).await;
-    // A server that cannot even start says so itself.
-    if let Ok(server) = server {
-        let faults = server.check_integrity().await;
-        assert!(
-            faults
-                .iter()
-                .any(|fault| fault.contains("database is damaged") || fault.contains("cannot be checked")),
-            "{faults:?}"
-        );
+    let server = Server::open(&config(client.folder.path(), client.drawer.clone())).await.unwrap();
+    server.make_stimuli(&|_| {}).await.unwrap();
+    let client = Client { server, ..client };
+    let faults = client.server.check_integrity().await;
+    assert!(faults.iter().any(|fault| fault.contains("The database is damaged")), "{faults:?}");
+    let told = client.research(&cookie, results).await;
+    assert_eq!(told.status, StatusCode::SERVICE_UNAVAILABLE);
+    let detail = told.json()["detail"].as_str().unwrap().to_owned();
+    for said in
+        ["The server's database is damaged.", "copy of the data folder", "backup", "kelir chain check"]
+    {
+        assert!(detail.contains(said), "{said}: {detail}");
     }
+    assert_eq!(client.get("/healthz").await.text(), "degraded\n");
+    client.take(json!({ "PROLIFIC_PID": "later" }), ["left", "left", "right"]).await;
 }

@@ -13,3 +13,4 @@ mod research;
 mod sizes;
 mod taking_part;
 mod versions;
+mod weight;

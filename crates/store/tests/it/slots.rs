@@ -1,11 +1,12 @@
 //! Slots are found at constant cost and are the very ones that the plain definition gives.
 
-use crate::setting::{IDLE, Served, begin, open, stranger};
+use crate::setting::{IDLE, Served, answer, append, begin, open, stranger};
 use kelir_store::{Begun, Session, SessionKind, Store, StoreError};
 use kelir_study::plan::lowest_free_slot;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use sqlx::sqlite::SqliteConnection;
+use std::collections::HashSet;
 use std::path::Path;
 
 const MINUTES: u64 = 60;
@@ -16,9 +17,11 @@ enum Event {
     Starts(SessionKind),
     /// One of the sessions completes.
     Completes(usize),
-    /// One is heard of again.
+    /// One answers something.
+    Answers(usize),
+    /// One is back, and is moved where somebody else has its slot and it has no answer.
     Returns(usize),
-    /// One consents, and is moved where somebody else has its slot.
+    /// One consents; otherwise the same.
     Consents(usize),
     MinutesPass(u32),
 }
@@ -28,6 +31,7 @@ fn event() -> impl Strategy<Value = Event> {
         6 => Just(Event::Starts(SessionKind::Participant)),
         1 => Just(Event::Starts(SessionKind::Pilot)),
         2 => any::<usize>().prop_map(Event::Completes),
+        1 => any::<usize>().prop_map(Event::Answers),
         2 => any::<usize>().prop_map(Event::Returns),
         2 => any::<usize>().prop_map(Event::Consents),
         3 => (1u32..90).prop_map(Event::MinutesPass),
@@ -58,6 +62,7 @@ async fn holds(
 ) -> Result<(), TestCaseError> {
     let mut raw = stranger(folder).await;
     let mut sessions: Vec<Session> = Vec::new();
+    let mut answered = HashSet::new();
     for event in events {
         let of = |n: usize| (!sessions.is_empty()).then(|| sessions[n % sessions.len()].clone());
         match event {
@@ -72,22 +77,31 @@ async fn holds(
                 let done = "UPDATE sessions SET completed_at = created_at, completion_code = 'C' WHERE session_id = $1";
                 sqlx::query(done).bind(&session.session_id).execute(&mut raw).await.unwrap();
             }
-            Event::Returns(n) => {
+            Event::Answers(n) => {
                 let Some(session) = of(n) else { continue };
-                store.touch_session(&session.session_id).await.unwrap();
+                append(store, &session, answer(0, true, 500.0)).await;
+                answered.insert(session.session_id);
             }
-            Event::Consents(n) => {
+            Event::Returns(n) | Event::Consents(n) => {
                 let Some(session) = of(n) else { continue };
                 let before = store.session(&session.session_id).await.unwrap().unwrap();
                 let others = held(&mut raw, &session.session_id).await;
                 let all = held(&mut raw, "").await;
                 let moves = before.kind == SessionKind::Participant
-                    && before.consented_at.is_none()
+                    && before.completed_at.is_none()
+                    && !answered.contains(&before.session_id)
                     && others.contains(&before.slot);
                 let plan = served.clone();
                 let idle = std::time::Duration::from_secs(60 * MINUTES);
                 let plan = move |slot| Ok::<_, StoreError>(plan.plan(slot));
-                let after = store.consent(&before, "text", idle, plan).await.unwrap();
+                let after = match event {
+                    Event::Consents(_) => store.consent(&before, "text", idle, plan).await.unwrap(),
+                    _ => store.resume(&before, idle, plan).await.unwrap(),
+                };
+                prop_assert_eq!(
+                    after.consented_at.is_some(),
+                    before.consented_at.is_some() || matches!(event, Event::Consents(_))
+                );
                 prop_assert_eq!(after.slot, if moves { lowest_free_slot(all) } else { before.slot });
                 let trials = store.trials(&after.session_id).await.unwrap();
                 prop_assert_eq!(trials, served.plan(after.slot).next.trials);

@@ -55,6 +55,8 @@ pub struct Judged<'a> {
     pub left_out: Vec<(&'a Visit, LeftOut)>,
     /// What was noticed of each session.
     pub flags: HashMap<&'a str, Vec<Flag>>,
+    /// Places in the design that more than one of those who count has completed.
+    pub doubled_places: u64,
 }
 
 impl<'a> Judged<'a> {
@@ -72,7 +74,10 @@ impl<'a> Judged<'a> {
             .collect();
         let counts = |visit: &Visit| visit.kind == SessionKind::Participant || with.contains(&visit.kind);
         let counted = counted(visits.iter().filter(|visit| counts(visit)), &answered);
-        let mut all = Judged::default();
+        let mut all = Judged {
+            doubled_places: doubled(visits.iter().filter(|visit| counts(visit))),
+            ..Judged::default()
+        };
         for visit in visits {
             let session = visit.session_id.as_str();
             let participant = answered.get(session).copied();
@@ -102,6 +107,15 @@ impl<'a> Judged<'a> {
         }
         all
     }
+}
+
+/// How many places more than one visit has completed.
+fn doubled<'a>(visits: impl Iterator<Item = &'a Visit>) -> u64 {
+    let mut completed: HashMap<(&str, u32), u64> = HashMap::new();
+    for visit in visits.filter(|visit| visit.completed_us.is_some()) {
+        *completed.entry((&visit.version, visit.slot)).or_default() += 1;
+    }
+    completed.values().filter(|visits| **visits > 1).count() as u64
 }
 
 /// Each person's session that counts: the one that was finished first, or else the first of those begun that has answers.

@@ -1,9 +1,11 @@
 //! Visits: whose each session is, what was noticed of it, and which of a person's sessions is judged.
 
+mod balance;
 mod identity;
 mod judged;
 mod pace;
 
+pub use balance::{Balance, UnevenItem};
 pub use identity::{ID_PARAMETERS, LONGEST_ID, RefusedId};
 pub use judged::{Judged, LeftOut, Repeated};
 pub use pace::Pace;
@@ -57,6 +59,10 @@ pub struct Visit {
     pub session_id: String,
     /// The id that came with the link: one person's, whatever the session. `None`: nobody's but the session's own.
     pub person: Option<String>,
+    /// Version of the study that it is of.
+    pub version: String,
+    /// Its place in that version's design.
+    pub slot: u32,
     /// Whose it is.
     pub kind: SessionKind,
     /// What was noticed when it began.

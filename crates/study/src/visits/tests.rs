@@ -101,6 +101,8 @@ fn visit(session: &str, person: Option<&str>, completed_us: Option<i64>) -> Visi
     Visit {
         session_id: session.to_owned(),
         person: person.map(str::to_owned),
+        version: String::new(),
+        slot: session.parse().unwrap(),
         kind: SessionKind::Participant,
         flags: Vec::new(),
         consented_us: Some(0),
@@ -224,4 +226,27 @@ fn the_table_of_flags_in_the_study_files_pages_is_this_one() {
     for name in ID_PARAMETERS {
         assert!(page.contains(&format!("`{name}`")), "{name}");
     }
+}
+
+#[test]
+fn places_that_two_have_completed_are_counted_and_items_that_lean_are_named() {
+    let study = study("");
+    let mut visits = [visit("1", None, Some(1)), visit("2", None, Some(2)), visit("3", None, None)];
+    let mut given = Answers::new(&study);
+    // The target stands first for everybody in x, and alternates in y.
+    for (session, conditions) in [("1", ["pa", "mc"]), ("2", ["mc", "pa"]), ("3", ["pa", "mc"])] {
+        given.push(Row::choice(session, 0, "x", ["pa", "mc"], true, 1500.0));
+        given.push(Row::choice(session, 1, "y", conditions, true, 1500.0));
+    }
+    let balance = |visits: &[Visit]| Balance::of(&study, &Judged::of(&study, &given, visits, &[]));
+    let lean = UnevenItem { block: "b".into(), item: "x".into(), target_first: 3, answers: 3 };
+    assert_eq!(balance(&visits), Balance { items: 2, doubled_places: 0, uneven: vec![lean] });
+    visits[1].slot = 1;
+    assert_eq!(balance(&visits).doubled_places, 1);
+    visits[1].version = "another".to_owned();
+    assert_eq!(balance(&visits).doubled_places, 0, "places are a version's own");
+    visits[1].version = String::new();
+    visits[1].completed_us = None;
+    assert_eq!(balance(&visits).doubled_places, 0, "who does not finish leaves the place to another");
+    assert_eq!(balance(&[]), Balance::default(), "without answers nothing is said to be even");
 }
