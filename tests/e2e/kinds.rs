@@ -266,7 +266,7 @@ fn what_the_export_says_of_a_stimulus_is_how_wide_it_stood_on_any_display() {
         (1.0, (1280, 800), "mouse"),
         (2.0, (1280, 800), "pen"),
         (3.0, (390, 844), "touch"),
-        (2.0, (190, 500), "pen"),
+        (2.0, (180, 500), "pen"),
     ];
     let visits: Vec<Value> = (displays.iter().enumerate())
         .map(|(i, (dpr, (width, height), input))| {
