@@ -113,7 +113,7 @@ test("by keyboard: another version, one pooled with it; the address keeps it, li
   assert.equal(await completed(v), "21");
   assert.equal(await v.page.getByText("not the same in all pooled versions").count(), 1);
   const hrefs = await links(v);
-  assert.equal(hrefs.length, 5);
+  assert.equal(hrefs.length, 10);
   for (const href of hrefs) assert.ok(href.includes(`/versions/${versions.before}/`) && href.endsWith(`?with=${versions.pilot}`), href);
   await v.hook("report-stills").waitFor();
   assert.ok(v.mock.log.some((call) => call.path.endsWith(`/versions/${versions.before}/report`) && call.query === `?with=${versions.pilot}`), "the report is of the same answers");
