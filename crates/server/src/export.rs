@@ -103,10 +103,7 @@ pub async fn spreadsheet(store: &Store, selection: &Selection) -> Result<Vec<u8>
         participants_table(store, selection).await?,
         events_table(store, selection).await?,
     ];
-    let written = tokio::task::spawn_blocking(move || workbook(&tables)).await;
-    written
-        .map_err(|e| ExportError::Workbook(e.to_string()))?
-        .map_err(|e| ExportError::Workbook(e.to_string()))
+    workbook(&tables).map_err(|e| ExportError::Workbook(e.to_string()))
 }
 
 /// Why there is no spreadsheet.

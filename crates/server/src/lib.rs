@@ -10,6 +10,7 @@ mod audit;
 mod check;
 mod connections;
 mod content;
+mod drawing;
 mod error;
 mod events;
 mod export;

@@ -1,5 +1,6 @@
 //! Making a study's stimuli: each once, stored by what it is with where it came from.
 
+use crate::drawing;
 use crate::library::{Library, beside};
 use crate::picture;
 use kelir_store::{ANIMATION, Render, StimulusInfo, Store, StoreError, StudyStimulus, sha256_hex};
@@ -82,7 +83,7 @@ pub trait Maker: Send + Sync + 'static {
         &self,
         task: &Task<'_>,
         library: &Library,
-        progress: &mut dyn FnMut(f64, &str),
+        progress: &mut (dyn FnMut(f64, &str) + Send),
     ) -> Result<Made, String>;
 }
 
@@ -193,14 +194,12 @@ pub(crate) async fn make(
         };
         let failed = |reason: String| MakingError::Stimulus { stimulus: stimulus.clone(), reason };
         progress(event(0.0, "looking it up"));
-        // Rendering takes long and keeps every core busy: it must not hold an async thread.
-        let identity =
-            tokio::task::block_in_place(|| identity(task, library, maker.as_ref())).map_err(failed)?;
+        let identity = drawing::draw(|| identity(task, library, maker.as_ref())).map_err(failed)?;
         let job_key = sha256_hex(identity.as_bytes());
         let (info, provenance) = match intact(store, &job_key).await? {
             Some(known) => known,
             None => {
-                let drawn = tokio::task::block_in_place(|| {
+                let drawn = drawing::draw(|| {
                     draw(task, library, maker.as_ref(), &mut |fraction, step| progress(event(fraction, step)))
                 });
                 match keep(store, &job_key, drawn.map_err(failed)?).await {
@@ -291,7 +290,7 @@ fn draw(
     task: &Task<'_>,
     library: &Library,
     maker: &dyn Maker,
-    progress: &mut dyn FnMut(f64, &str),
+    progress: &mut (dyn FnMut(f64, &str) + Send),
 ) -> Result<Made, String> {
     match task.condition {
         Condition::Rendered { .. } => maker.make(task, library, progress),

@@ -47,7 +47,7 @@ impl Maker for RenderMaker {
         &self,
         task: &Task<'_>,
         library: &Library,
-        progress: &mut dyn FnMut(f64, &str),
+        progress: &mut (dyn FnMut(f64, &str) + Send),
     ) -> Result<Made, String> {
         let job = job(task)?;
         let scene = library.scene(&job.scene).map_err(lines)?;

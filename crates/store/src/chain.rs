@@ -6,12 +6,14 @@ use crate::error::StoreError;
 use crate::files::sha256_hex;
 use crate::first_chain::{self, FirstRow, GENESIS};
 use crate::sqlite::Store;
+use crate::stimuli::patiently;
 use rusqlite::params;
 use serde::Serialize;
 use serde::de::IgnoredAny;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 use std::borrow::Cow;
+use tokio::runtime::Handle;
 use utoipa::ToSchema;
 
 /// What checking a study's answers found, those of chain version 1 (all studies of before) among them.
@@ -57,6 +59,11 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn verify_chain(&self, study_id: &str) -> Result<ChainReport, StoreError> {
+        let (store, study_id) = (self.clone(), study_id.to_owned());
+        patiently(move || Handle::current().block_on(store.verify(&study_id))).await
+    }
+
+    async fn verify(&self, study_id: &str) -> Result<ChainReport, StoreError> {
         let mut report = ChainReport { rows: 0, head: GENESIS.to_owned(), faults: Vec::new(), blanked: 0 };
         self.verify_first(&mut report).await?;
         report.head = self.readers.read(genesis).await?;

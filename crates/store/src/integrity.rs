@@ -2,6 +2,7 @@
 
 use crate::error::StoreError;
 use crate::sqlite::{DATABASE, Store};
+use crate::stimuli::patiently;
 use rusqlite::{Connection, OpenFlags};
 use std::time::Duration;
 
@@ -15,7 +16,7 @@ impl Store {
     /// The database cannot even be opened or read.
     pub async fn quick_check(&self) -> Result<Vec<String>, StoreError> {
         let database = self.folder().join(DATABASE);
-        let checked = tokio::task::spawn_blocking(move || {
+        patiently(move || {
             let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
             let connection = Connection::open_with_flags(database, flags)?;
             connection.busy_timeout(Duration::from_secs(10))?;
@@ -25,7 +26,7 @@ impl Store {
             // A line can hold several faults; "ok" stands alone.
             let faults = lines.iter().flat_map(|line| line.lines()).filter(|line| *line != "ok");
             Ok(faults.map(str::to_owned).collect())
-        });
-        checked.await.map_err(|error| StoreError::corrupt("database", error))?
+        })
+        .await
     }
 }

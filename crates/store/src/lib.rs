@@ -4,6 +4,7 @@
 //! order; several read. [`Store`] is the one type the rest of kelir knows; which database is behind it is its own business.
 
 mod answers;
+mod background;
 mod chain;
 mod clock;
 mod error;
@@ -35,6 +36,7 @@ mod writer;
 pub use answers::{
     AnswerRow, Appended, NewAnswer, NextTrials, Progress, SentAnswer, ShownStimulus, StoredAnswer, Taken,
 };
+pub use background::{background, step_back};
 pub use chain::{ChainReport, Fault};
 pub use clock::micros;
 pub use error::{StoreError, Trouble};

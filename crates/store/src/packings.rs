@@ -4,7 +4,7 @@ use crate::clock;
 use crate::error::StoreError;
 use crate::packing::{PACKER, pack, unpacked};
 use crate::sqlite::Store;
-use crate::stimuli::{StimulusInfo, blocking};
+use crate::stimuli::{StimulusInfo, blocking, patiently};
 use rusqlite::{OptionalExtension, Row, params};
 
 /// A stored stimulus as browsers get it.
@@ -45,7 +45,7 @@ impl Store {
         let (files, StimulusInfo { sha256, media_type, pixels_sha256, .. }) = (self.files.clone(), info);
         let name = sha256.clone();
         let wrong = StoreError::Undecodable;
-        let (packed_sha256, size_bytes) = blocking(move || {
+        let (packed_sha256, size_bytes) = patiently(move || {
             let frame = |name: &str| files.get(name).ok().flatten();
             let stored = files.get(&name)?.ok_or_else(|| wrong("is not there".to_owned()))?;
             let packed = pack(&media_type, &stored, &frame).map_err(wrong)?;

@@ -7,6 +7,7 @@ use crate::clock::micros;
 use crate::error::StoreError;
 use crate::readers::connect;
 use crate::sqlite::{DATABASE, Store};
+use crate::stimuli::patiently;
 use kelir_study::StudyDefinition;
 use kelir_study::answers::{Answers, Row};
 use kelir_study::trials::{Shown, rules};
@@ -64,14 +65,13 @@ impl Store {
             empty: stored.answers.emptied(),
         };
         let after = stored.through;
-        let read = tokio::task::spawn_blocking(move || {
+        let read = patiently(move || {
             // The first chain is older than the second.
             let first = source.read(&FIRST, after[0], SHARE)?;
             let second = source.read(&SECOND, after[1], SHARE)?;
-            Ok::<_, StoreError>([first, second])
+            Ok([first, second])
         });
-        let read = read.await.map_err(|e| StoreError::corrupt("answers", e))??;
-        for (through, (newest, parts)) in stored.through.iter_mut().zip(read) {
+        for (through, (newest, parts)) in stored.through.iter_mut().zip(read.await?) {
             if parts.iter().any(|part| !part.is_empty()) {
                 let answers = Arc::make_mut(&mut stored.answers);
                 parts.into_iter().for_each(|part| answers.append(part));

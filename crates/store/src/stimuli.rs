@@ -1,5 +1,6 @@
 //! Stimuli: bytes made once, with where they came from.
 
+use crate::background::background;
 use crate::clock;
 use crate::error::StoreError;
 use crate::files::is_sha256;
@@ -64,7 +65,7 @@ impl Store {
     /// They are no picture and no animation ([`StoreError::Undecodable`]), or they cannot be stored.
     pub async fn put_stimulus(&self, media_type: &str, bytes: Vec<u8>) -> Result<StimulusInfo, StoreError> {
         let (files, size_bytes, kind) = (self.files.clone(), bytes.len() as u64, media_type.to_owned());
-        let (sha256, pixels) = blocking(move || {
+        let (sha256, pixels) = patiently(move || {
             let frame = |name: &str| files.get(name).ok().flatten();
             let pixels = pixels::of(&kind, &bytes, &frame).map_err(StoreError::Undecodable)?;
             Ok((files.put(&bytes)?, pixels))
@@ -193,6 +194,14 @@ impl Store {
 
 pub(crate) fn read_json(text: String) -> Result<Value, StoreError> {
     serde_json::from_str(&text).map_err(|e| StoreError::corrupt("provenance", e))
+}
+
+/// Work on pictures, which takes long, behind everybody who answers.
+pub(crate) async fn patiently<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, StoreError> + Send + 'static,
+) -> Result<T, StoreError> {
+    let lost = || StoreError::corrupt("task", "did not end");
+    background(work).await.unwrap_or_else(|| Err(lost()))
 }
 
 /// File work off the async threads.

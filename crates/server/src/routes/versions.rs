@@ -17,9 +17,12 @@ use axum::http::header;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 use kelir_report::{Document, Figures, StudyReport, html, markdown};
+use kelir_store::background;
 use kelir_study::columns::{codebook, events_codebook, participants_codebook};
 use serde::Deserialize;
+use std::future::Future;
 use std::sync::Arc;
+use tokio::runtime::Handle;
 use utoipa::IntoParams;
 
 #[derive(Deserialize, IntoParams)]
@@ -67,8 +70,11 @@ impl FromRequestParts<Arc<App>> for Asked {
 )]
 pub(crate) async fn get_results(asked: Asked) -> Answered<StudyResults> {
     let Asked { app, selection, .. } = asked;
-    let answers = app.answers(&selection).await?;
-    Ok(Fresh(results_of(&app.store, &selection, &answers).await?))
+    let results = behind(async move {
+        let answers = app.answers(&selection).await?;
+        Ok(results_of(&app.store, &selection, &answers).await?)
+    });
+    Ok(Fresh(results.await?))
 }
 
 /// The full report: every number there is.
@@ -110,14 +116,19 @@ async fn judged(asked: Asked) -> Result<StudyReport, Box<Problem>> {
     let Asked { app, selection, .. } = asked;
     let task = app.clone();
     let _permit = app.reporting.acquire().await.map_err(Problem::internal)?;
-    // On a thread of its own kind: answering participants must not wait for it.
-    let judged = tokio::task::spawn_blocking(move || {
-        tokio::runtime::Handle::current().block_on(async {
-            let answers = task.answers(&selection).await?;
-            report_of(&task.store, &selection, &answers).await.map_err(Box::<Problem>::from)
-        })
-    });
-    judged.await.map_err(Problem::internal)?
+    behind(async move {
+        let answers = task.answers(&selection).await?;
+        Ok(report_of(&task.store, &selection, &answers).await?)
+    })
+    .await
+}
+
+/// Does what reads a lot and keeps a core busy behind everybody who answers.
+async fn behind<T: Send + 'static>(
+    work: impl Future<Output = Result<T, Box<Problem>>> + Send + 'static,
+) -> Result<T, Box<Problem>> {
+    let done = background(|| Handle::current().block_on(work)).await;
+    done.ok_or_else(|| Problem::internal("what was asked for did not come to an end"))?
 }
 
 /// One row a trial, all that is known of it.
@@ -127,8 +138,9 @@ async fn judged(asked: Asked) -> Result<StudyReport, Box<Problem>> {
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
 pub(crate) async fn get_responses_csv(asked: Asked) -> File {
-    let table = responses_csv(&asked.app.store, &asked.selection).await?;
-    Ok(csv(&format!("{}-responses.csv", asked.study), table))
+    let name = format!("{}-responses.csv", asked.study);
+    let table = behind(async move { Ok(responses_csv(&asked.app.store, &asked.selection).await?) });
+    Ok(csv(&name, table.await?))
 }
 
 /// One row a session: who came, when, with what, how far, and whether their answers are judged. What each column is, is in
@@ -139,8 +151,10 @@ pub(crate) async fn get_responses_csv(asked: Asked) -> File {
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
 pub(crate) async fn get_participants_csv(asked: Asked) -> File {
-    let table = participants_table(&asked.app.store, &asked.selection).await?;
-    Ok(csv(&format!("{}-participants.csv", asked.study), table.csv()))
+    let name = format!("{}-participants.csv", asked.study);
+    let table =
+        behind(async move { Ok(participants_table(&asked.app.store, &asked.selection).await?.csv()) });
+    Ok(csv(&name, table.await?))
 }
 
 /// What each column of `participants.csv` is, as a table.
@@ -161,8 +175,11 @@ pub(crate) async fn get_participants_codebook_csv(asked: Asked) -> File {
     responses((status = OK, description = "A file to keep.", body = Vec<u8>, content_type = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"), Chosen)
 )]
 pub(crate) async fn get_export_xlsx(asked: Asked) -> File {
-    let file = spreadsheet(&asked.app.store, &asked.selection).await.map_err(Problem::internal)?;
-    Ok(download(XLSX, &format!("{}.xlsx", asked.study), file))
+    let name = format!("{}.xlsx", asked.study);
+    let file = behind(async move {
+        spreadsheet(&asked.app.store, &asked.selection).await.map_err(Problem::internal)
+    });
+    Ok(download(XLSX, &name, file.await?))
 }
 
 /// The choices as pwcmp reads them, one row a trial.
@@ -172,8 +189,9 @@ pub(crate) async fn get_export_xlsx(asked: Asked) -> File {
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
 pub(crate) async fn get_pairs_csv(asked: Asked) -> File {
-    let table = pairs_csv(&asked.app.store, &asked.selection).await?;
-    Ok(csv(&format!("{}-pairs.csv", asked.study), table))
+    let name = format!("{}-pairs.csv", asked.study);
+    let table = behind(async move { Ok(pairs_csv(&asked.app.store, &asked.selection).await?) });
+    Ok(csv(&name, table.await?))
 }
 
 /// One row for each thing that happened to a page while a trial was taken: lost focus, a resize, an input that did not count.
@@ -183,8 +201,9 @@ pub(crate) async fn get_pairs_csv(asked: Asked) -> File {
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
 pub(crate) async fn get_events_csv(asked: Asked) -> File {
-    let table = events_table(&asked.app.store, &asked.selection).await?;
-    Ok(csv(&format!("{}-events.csv", asked.study), table.csv()))
+    let name = format!("{}-events.csv", asked.study);
+    let table = behind(async move { Ok(events_table(&asked.app.store, &asked.selection).await?.csv()) });
+    Ok(csv(&name, table.await?))
 }
 
 /// What each column of `events.csv` is, as a table.
@@ -194,7 +213,7 @@ pub(crate) async fn get_events_csv(asked: Asked) -> File {
     responses((status = OK, description = "A file to keep.", body = String, content_type = "text/csv"), Chosen)
 )]
 pub(crate) async fn get_events_codebook_csv(asked: Asked) -> File {
-    Ok(csv(&format!("{}-events_codebook.csv", asked.study), codebook_of(&events_codebook()).csv()))
+    Ok(csv(&format!("{}-events-codebook.csv", asked.study), codebook_of(&events_codebook()).csv()))
 }
 
 /// What each column of `responses.csv` is, as a table.

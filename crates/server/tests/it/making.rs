@@ -19,7 +19,7 @@ impl Maker for Failing {
         &self,
         task: &Task<'_>,
         library: &Library,
-        progress: &mut dyn FnMut(f64, &str),
+        progress: &mut (dyn FnMut(f64, &str) + Send),
     ) -> Result<Made, String> {
         if self.good.fetch_sub(1, Ordering::SeqCst) == 0 {
             return Err("the lamp went out".to_owned());

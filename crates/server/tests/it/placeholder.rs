@@ -23,7 +23,7 @@ impl Maker for Placeholder {
         &self,
         task: &Task<'_>,
         _: &Library,
-        progress: &mut dyn FnMut(f64, &str),
+        progress: &mut (dyn FnMut(f64, &str) + Send),
     ) -> Result<Made, String> {
         self.drawn.fetch_add(1, Ordering::SeqCst);
         let seed = task.pair.id.bytes().fold(7u32, |h, b| h.wrapping_mul(31).wrapping_add(u32::from(b)));

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use kelir_render::Isa;
 use serde::Serialize;
 use serde_json::Value;
@@ -115,12 +115,13 @@ async fn measure(args: &Args) -> Result<Vec<Line>> {
         }
     }
     for side in &sides {
-        let sessions = begin(side, 2 * args.people).await?.0;
-        let people = sessions.chunks_exact(2).map(answers).collect();
-        let times = pace(side.address, people, PACE).await?;
-        figures.push(Line::of(format!("{} people, {}", args.people, side.name), &times));
+        figures.push(panel(side, args.people).await?);
     }
     drop(sides);
+    let side = sides::kelir_drawing().await?;
+    figures.push(panel(&side, args.people).await?);
+    ensure!(side.draws().await?, "nothing was drawn any more at the end: the waits say nothing");
+    drop(side);
     let side = sides::kelir()?;
     let (mut size, mut held) = (100, 0);
     while size <= args.sessions {
@@ -133,6 +134,14 @@ async fn measure(args: &Args) -> Result<Vec<Line>> {
         size *= 10;
     }
     Ok(figures)
+}
+
+/// So many people who answer at their pace, two sessions each.
+async fn panel(side: &Side, people: usize) -> Result<Line> {
+    let sessions = begin(side, 2 * people).await?.0;
+    let answers = sessions.chunks_exact(2).map(answers).collect();
+    let times = pace(side.address, answers, PACE).await?;
+    Ok(Line::of(format!("{people} people, {}", side.name), &times))
 }
 
 /// Begins so many sessions and gives their consent: their ids and tokens, and how long beginning took.

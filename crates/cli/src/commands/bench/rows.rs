@@ -314,7 +314,7 @@ impl Maker for Nobody {
         Err("nothing is drawn in a benchmark of answers".to_owned())
     }
 
-    fn make(&self, _: &Task<'_>, _: &Library, _: &mut dyn FnMut(f64, &str)) -> Result<Made, String> {
+    fn make(&self, _: &Task<'_>, _: &Library, _: &mut (dyn FnMut(f64, &str) + Send)) -> Result<Made, String> {
         Err("nothing is drawn in a benchmark of answers".to_owned())
     }
 }

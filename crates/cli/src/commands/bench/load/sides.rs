@@ -8,6 +8,8 @@ use std::process::{Child, Command, Stdio};
 use anyhow::{Context, Result, ensure};
 use tempfile::TempDir;
 
+use super::client::{Connection, request};
+
 /// Items of the study, and so answers of a session.
 pub const ITEMS: usize = 5;
 
@@ -25,6 +27,29 @@ title = "Stills"
 kind = "still"
 conditions = ["pa", "mc"]
 target = "pa"
+"#;
+
+/// Behind the small study, in the order in which their pictures are made.
+const SLOW_FILE: &str = "studies/slow.toml";
+
+/// A study whose first picture takes hours.
+const SLOW: &str = r#"
+title = "Slow"
+question = "Which?"
+seed = 3
+size = [1920, 1080]
+estimated_minutes = 1
+texts = { welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }
+conditions = { mc = { technique = "mc", spp = 1048576 }, pa = { technique = "pa" } }
+[[blocks]]
+id = "stills"
+title = "Stills"
+kind = "still"
+conditions = ["mc", "pa"]
+target = "pa"
+[[blocks.items]]
+id = "still"
+scene = "../scenes/load.toml"
 "#;
 
 const SCENE: &str = r#"
@@ -78,7 +103,35 @@ fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
 
 /// kelir itself, with a small study in place of the built-in one.
 pub fn kelir() -> Result<Side> {
+    served("kelir", tempfile::tempdir()?, "The stimuli are ready.")
+}
+
+/// The same while it draws the pictures of another study, which it does for longer than anybody measures.
+pub async fn kelir_drawing() -> Result<Side> {
     let folder = tempfile::tempdir()?;
+    write(folder.path(), SLOW_FILE, SLOW)?;
+    let side = served("kelir while it draws", folder, "http://")?;
+    let start = request("POST", "/api/v1/studies/shadow-puppets/sessions", "", "{}");
+    for _ in 0..300 {
+        if Connection::open(side.address).await?.send(&start).await.is_ok() {
+            return Ok(side);
+        }
+        tokio::time::sleep(std::time::Duration::from_millis(100)).await;
+    }
+    anyhow::bail!("the small study was not ready after 30 s")
+}
+
+impl Side {
+    /// Whether the slow study's pictures are still being drawn.
+    pub async fn draws(&self) -> Result<bool> {
+        let start = request("POST", "/api/v1/studies/slow/sessions", "", "{}");
+        let refused = Connection::open(self.address).await?.send(&start).await.err();
+        Ok(refused.is_some_and(|error| error.to_string().contains("503")))
+    }
+}
+
+/// A small study in place of the built-in one, served from a folder that may hold others.
+fn served(name: &'static str, folder: TempDir, ready: &str) -> Result<Side> {
     let item = |i| format!("[[blocks.items]]\nid = \"still-{i}\"\nscene = \"../scenes/load.toml\"\n");
     let study: String = (0..ITEMS).map(item).collect();
     write(folder.path(), "studies/shadow-puppets.toml", &format!("{STUDY}{study}"))?;
@@ -86,7 +139,7 @@ pub fn kelir() -> Result<Side> {
     write(folder.path(), "puppets/square.svg", SQUARE)?;
     let mut command = Command::new(std::env::current_exe()?);
     command.arg("serve").arg("--data").arg(folder.path()).args(["--listen", "127.0.0.1:0"]);
-    start("kelir", command, folder, "The stimuli are ready.")
+    start(name, command, folder, ready)
 }
 
 /// Express and better-sqlite3, installed into a temporary folder.
