@@ -75,12 +75,12 @@ fn typed<T: DeserializeOwned>(
 /// A request's body as a `T`, whose schema it has been held to.
 pub(crate) struct Body<T>(pub(crate) T);
 
-impl<T: ToSchema + DeserializeOwned, S: Send + Sync> FromRequest<S> for Body<T> {
+impl<T: ToSchema + DeserializeOwned + 'static, S: Send + Sync> FromRequest<S> for Body<T> {
     type Rejection = Box<Problem>;
 
     async fn from_request(request: Request, state: &S) -> Result<Self, Box<Problem>> {
         let object = Object::from_request(request, state).await?;
-        object.read(&Record::of::<T>()).map(Body)
+        object.read(Record::shared::<T>()).map(Body)
     }
 }
 

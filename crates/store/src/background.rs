@@ -42,8 +42,7 @@ mod tests {
     #[tokio::test]
     async fn background_work_steps_back_with_all_it_starts_and_nobody_else_does() {
         let before = nice();
-        let (own, started) =
-            background(|| (nice(), std::thread::spawn(nice).join().unwrap())).await.unwrap();
+        let (own, started) = background(|| (nice(), std::thread::spawn(nice).join().unwrap())).await.unwrap();
         assert_eq!((own, started), (19, 19));
         assert_eq!(nice(), before);
         assert_eq!(tokio::task::spawn_blocking(nice).await.unwrap(), before);

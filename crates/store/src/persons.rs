@@ -2,7 +2,7 @@
 
 use crate::clock;
 use crate::error::StoreError;
-use crate::sessions::{NewSession, Session, SessionKind, read_session};
+use crate::sessions::{NewSession, Session, SessionKind, read_session, session_columns};
 use crate::sqlite::Store;
 use kelir_study::Repeat;
 use kelir_study::visits::{Flag, Visit};
@@ -36,8 +36,12 @@ impl Begun {
 }
 
 /// The session of the same person that comes first to mind: a finished one, else the last with consent, else the last.
-const OF_PERSON: &str = "SELECT * FROM sessions WHERE study_id = ?1 AND subject_id = ?2 AND session_id <> subject_id AND kind = 'participant'
-     ORDER BY completed_at IS NULL, consented_at IS NULL, session_id DESC LIMIT 1";
+const OF_PERSON: &str = concat!(
+    "SELECT ",
+    session_columns!(),
+    " FROM sessions WHERE study_id = ?1 AND subject_id = ?2 AND session_id <> subject_id AND kind = 'participant'
+     ORDER BY completed_at IS NULL, consented_at IS NULL, session_id DESC LIMIT 1"
+);
 
 /// What the study's policy makes of somebody whose id has a session already; `None`: a new session begins, flagged where need be. In the
 /// transaction that begins it, so that two tabs at once are two visits of one person too.
@@ -67,7 +71,11 @@ pub(crate) fn settle(writer: &Connection, new: &mut NewSession) -> Result<Option
 /// The session that the same wish began: whoever asks for it again has not heard of it, or of no consent to it.
 fn asked_again(writer: &Connection, new: &NewSession) -> Result<Option<Begun>, StoreError> {
     let Some(key) = &new.start_key else { return Ok(None) };
-    let mut query = writer.prepare_cached("SELECT * FROM sessions WHERE study_id = ?1 AND start_key = ?2")?;
+    let mut query = writer.prepare_cached(concat!(
+        "SELECT ",
+        session_columns!(),
+        " FROM sessions WHERE study_id = ?1 AND start_key = ?2"
+    ))?;
     let mut known = query.query([&new.study_id, key])?;
     let Some(known) = known.next()?.map(read_session).transpose()? else { return Ok(None) };
     if known.consented_at.is_some() {

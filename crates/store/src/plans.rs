@@ -116,13 +116,18 @@ impl Store {
 }
 
 pub(crate) fn next_trial(connection: &Connection, session_id: &str) -> Result<Option<u32>, StoreError> {
+    // Where the answers have no gap, as they seldom have, the trials before their end need no second look.
+    let mut answers = connection.prepare_cached(
+        "SELECT CASE count(*) WHEN max(trial_index) + 1 THEN count(*) ELSE 0 END FROM answers WHERE session_id = ?1",
+    )?;
+    let from: u32 = answers.query_row([session_id], |row| row.get(0))?;
     let mut query = connection.prepare_cached(
-        "SELECT trial_index FROM session_trials t WHERE session_id = ?1
+        "SELECT trial_index FROM session_trials t WHERE session_id = ?1 AND trial_index >= ?2
          AND NOT EXISTS (SELECT 1 FROM answers a WHERE a.session_id = ?1 AND a.trial_index = t.trial_index)
          AND NOT EXISTS (SELECT 1 FROM responses r WHERE r.session_id = ?1 AND r.trial_index = t.trial_index)
          ORDER BY trial_index LIMIT 1",
     )?;
-    Ok(query.query_row([session_id], |row| row.get(0)).optional()?)
+    Ok(query.query_row((session_id, from), |row| row.get(0)).optional()?)
 }
 
 pub(crate) fn trial(

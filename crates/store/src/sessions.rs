@@ -16,6 +16,15 @@ use utoipa::ToSchema;
 
 pub use kelir_study::visits::SessionKind;
 
+/// The columns of a session's row, in the order in which they are read and written.
+macro_rules! session_columns {
+    () => {
+        "session_id, study_id, version, file_hash, subject_id, token_hash, slot, plan_seed, more, params, display, created_at, last_seen_at, \
+         consented_at, consent_sha256, completed_at, completion_code, kind, flags, start_key, user_agent"
+    };
+}
+pub(crate) use session_columns;
+
 /// What is known of someone who begins.
 #[derive(Clone, Debug)]
 pub struct NewSession {
@@ -147,9 +156,11 @@ impl Store {
         let study_id = study_id.to_owned();
         self.readers
             .read(move |connection| {
-                let mut query = connection.prepare_cached(
-                    "SELECT * FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id",
-                )?;
+                let mut query = connection.prepare_cached(concat!(
+                    "SELECT ",
+                    session_columns!(),
+                    " FROM sessions WHERE study_id = ?1 AND version IN (SELECT value FROM json_each(?2)) ORDER BY session_id"
+                ))?;
                 let mut rows = query.query([study_id, versions])?;
                 let mut sessions = Vec::new();
                 while let Some(row) = rows.next()? {
@@ -370,11 +381,11 @@ pub(crate) fn answered(connection: &Connection, session_id: &str) -> Result<Vec<
 }
 
 pub(crate) fn insert_session(writer: &Connection, session: &Session) -> Result<(), StoreError> {
-    let mut insert = writer.prepare_cached(
-        "INSERT INTO sessions (session_id, study_id, version, file_hash, subject_id, token_hash, slot, plan_seed, more, params, display,
-         created_at, last_seen_at, consented_at, consent_sha256, completed_at, completion_code, kind, flags, start_key, user_agent)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21)",
-    )?;
+    let mut insert = writer.prepare_cached(concat!(
+        "INSERT INTO sessions (",
+        session_columns!(),
+        ") VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21)"
+    ))?;
     insert.execute(params![
         session.session_id,
         session.study_id,
@@ -403,38 +414,47 @@ pub(crate) fn insert_session(writer: &Connection, session: &Session) -> Result<(
 
 /// The session with this id, as it stands in this transaction.
 pub(crate) fn session(connection: &Connection, session_id: &str) -> Result<Option<Session>, StoreError> {
-    let mut query = connection.prepare_cached("SELECT * FROM sessions WHERE session_id = ?1")?;
+    let mut query = connection.prepare_cached(concat!(
+        "SELECT ",
+        session_columns!(),
+        " FROM sessions WHERE session_id = ?1"
+    ))?;
     let mut rows = query.query([session_id])?;
     rows.next()?.map(read_session).transpose()
 }
 
+/// A session's row as `session_columns!` has it, read by place: finding 21 names would cost the writer more than the row itself.
 pub(crate) fn read_session(row: &rusqlite::Row<'_>) -> Result<Session, StoreError> {
-    let json = |column: &'static str| -> Result<Value, StoreError> {
-        let text: String = row.get(column)?;
-        serde_json::from_str(&text).map_err(|e| StoreError::corrupt(column, e))
-    };
+    fn json<T: serde::de::DeserializeOwned>(
+        row: &rusqlite::Row<'_>,
+        place: usize,
+        name: &'static str,
+    ) -> Result<T, StoreError> {
+        let text = row.get_ref(place)?.as_str().map_err(rusqlite::Error::from)?;
+        serde_json::from_str(text).map_err(|e| StoreError::corrupt(name, e))
+    }
     Ok(Session {
-        session_id: row.get("session_id")?,
-        study_id: row.get("study_id")?,
-        version: row.get("version")?,
-        file_hash: row.get("file_hash")?,
-        subject_id: row.get("subject_id")?,
-        token_hash: row.get("token_hash")?,
-        slot: row.get("slot")?,
-        plan_seed: row.get("plan_seed")?,
-        more: row.get("more")?,
-        kind: serde_json::from_value(Value::String(row.get("kind")?))
+        session_id: row.get(0)?,
+        study_id: row.get(1)?,
+        version: row.get(2)?,
+        file_hash: row.get(3)?,
+        subject_id: row.get(4)?,
+        token_hash: row.get(5)?,
+        slot: row.get(6)?,
+        plan_seed: row.get(7)?,
+        more: row.get(8)?,
+        params: json(row, 9, "params")?,
+        display: json(row, 10, "display")?,
+        created_at: row.get(11)?,
+        last_seen_at: row.get(12)?,
+        consented_at: row.get(13)?,
+        consent_sha256: row.get(14)?,
+        completed_at: row.get(15)?,
+        completion_code: row.get(16)?,
+        kind: serde_json::from_value(Value::String(row.get(17)?))
             .map_err(|e| StoreError::corrupt("kind", e))?,
-        flags: serde_json::from_value(json("flags")?).map_err(|e| StoreError::corrupt("flags", e))?,
-        start_key: row.get("start_key")?,
-        user_agent: row.get("user_agent")?,
-        params: json("params")?,
-        display: json("display")?,
-        created_at: row.get("created_at")?,
-        last_seen_at: row.get("last_seen_at")?,
-        consented_at: row.get("consented_at")?,
-        consent_sha256: row.get("consent_sha256")?,
-        completed_at: row.get("completed_at")?,
-        completion_code: row.get("completion_code")?,
+        flags: json(row, 18, "flags")?,
+        start_key: row.get(19)?,
+        user_agent: row.get(20)?,
     })
 }

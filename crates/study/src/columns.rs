@@ -13,6 +13,7 @@ use crate::schema::{Column, Record, Sound, worded};
 use crate::trials::{Role, TrialKind, TrialName};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
@@ -288,11 +289,11 @@ impl Rows {
         let mut values = Map::new();
         let sent = match answered.payload {
             // Withdrawn.
-            Value::Null => Sound { value: Value::Null, broken: Vec::new() },
+            Value::Null => Sound { value: Cow::Owned(Value::Null), broken: Vec::new() },
             payload => with_known_size(answered.trial.trial.rules().record().sound(payload), answered.study),
         };
         for (path, column) in &self.sent {
-            let value = path.iter().try_fold(&sent.value, |value, key| value.get(key));
+            let value = path.iter().try_fold(sent.value.as_ref(), |value, key| value.get(key));
             values.insert(column.clone(), value.cloned().unwrap_or_default());
         }
         let trial = serde_json::to_value(trial_columns(answered, &sent));
@@ -309,7 +310,7 @@ impl Rows {
 }
 
 /// A size that the study has not is none that a page can have shown.
-fn with_known_size(mut sent: Sound, study: &StudyDefinition) -> Sound {
+fn with_known_size<'a>(mut sent: Sound<'a>, study: &StudyDefinition) -> Sound<'a> {
     const FIELD: &str = "stimulus_size";
     let named = serde_json::from_value::<Option<[u32; 2]>>(sent.value[FIELD].clone());
     let known = named.is_ok_and(|size| size.is_none_or(|size| study.sizes().contains(&size)));
@@ -319,7 +320,7 @@ fn with_known_size(mut sent: Sound, study: &StudyDefinition) -> Sound {
     sent
 }
 
-fn trial_columns(answered: &Answered<'_>, sent: &Sound) -> TrialColumns {
+fn trial_columns(answered: &Answered<'_>, sent: &Sound<'_>) -> TrialColumns {
     let Answered { study, trial, .. } = answered;
     let viewport = &sent.value["viewport"];
     let block = study.block(&trial.block_id);

@@ -14,6 +14,10 @@ pub use columns::{Column, Meaning};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+use std::any::TypeId;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::sync::{LazyLock, PoisonError, RwLock};
 use utoipa::ToSchema;
 use utoipa::openapi::{RefOr, Schema};
 
@@ -44,9 +48,9 @@ fn escaped(name: &str) -> String {
 
 /// What can be used of a value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sound {
+pub struct Sound<'a> {
     /// The value, with null in place of each part that breaks a rule.
-    pub value: Value,
+    pub value: Cow<'a, Value>,
     /// The fields at the top that break a rule, or have a part that does, in the order of the check; an empty name is the value itself.
     pub broken: Vec<String>,
 }
@@ -64,6 +68,17 @@ impl Record {
         let mut components = Vec::new();
         T::schemas(&mut components);
         Record::new(&T::schema(), components)
+    }
+
+    /// The same, made once for as long as the process runs: for what is asked of every request.
+    pub fn shared<T: ToSchema + 'static>() -> &'static Record {
+        static MADE: LazyLock<RwLock<HashMap<TypeId, &'static Record>>> = LazyLock::new(RwLock::default);
+        let of = TypeId::of::<T>();
+        if let Some(made) = MADE.read().unwrap_or_else(PoisonError::into_inner).get(&of) {
+            return made;
+        }
+        let record = Box::leak(Box::new(Record::of::<T>()));
+        MADE.write().unwrap_or_else(PoisonError::into_inner).entry(of).or_insert(record)
     }
 
     /// A schema and the components by which its `$ref`s are resolved.
@@ -89,10 +104,10 @@ impl Record {
     }
 
     /// What can be used of a value that came from outside: every part that breaks a rule is null in it.
-    pub fn sound(&self, value: &Value) -> Sound {
-        let (mut value, mut broken) = (value.clone(), Vec::new());
-        for FieldError { pointer, .. } in self.check(&value) {
-            if let Some(part) = value.pointer_mut(&pointer) {
+    pub fn sound<'a>(&self, value: &'a Value) -> Sound<'a> {
+        let (found, mut value, mut broken) = (self.check(value), Cow::Borrowed(value), Vec::new());
+        for FieldError { pointer, .. } in found {
+            if let Some(part) = value.to_mut().pointer_mut(&pointer) {
                 *part = Value::Null;
             }
             let field = pointer.split('/').nth(1).unwrap_or_default().replace("~1", "/").replace("~0", "~");

@@ -176,9 +176,10 @@ pub(crate) async fn get_participants_codebook_csv(asked: Asked) -> File {
 )]
 pub(crate) async fn get_export_xlsx(asked: Asked) -> File {
     let name = format!("{}.xlsx", asked.study);
-    let file = behind(async move {
-        spreadsheet(&asked.app.store, &asked.selection).await.map_err(Problem::internal)
-    });
+    let file =
+        behind(
+            async move { spreadsheet(&asked.app.store, &asked.selection).await.map_err(Problem::internal) },
+        );
     Ok(download(XLSX, &name, file.await?))
 }
 

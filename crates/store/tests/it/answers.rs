@@ -1,6 +1,6 @@
 //! Answers: the first one stands, whoever races whom.
 
-use crate::setting::{IDLE, answer, append, begin, open, stranger};
+use crate::setting::{IDLE, answer, append, begin, fixture, half, open, stranger};
 use kelir_store::{Appended, Completed, Store, StoreError, StoredAnswers};
 use kelir_study::trials::Role;
 use serde_json::json;
@@ -37,6 +37,35 @@ async fn the_first_answer_stands_and_the_code_waits_for_the_last() {
     let counts = store.version_counts(&session.study_id, IDLE).await.unwrap()[&session.version];
     let people = counts.participants;
     assert_eq!((people.started, people.in_progress, people.completed, counts.answers), (1, 0, 1, 3));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_next_trial_is_the_lowest_without_an_answer_in_whatever_order_they_come() {
+    let (_folder, store, served) = open().await;
+    for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let session = begin(&store, &served, IDLE).await;
+        let mut open = vec![0, 1, 2];
+        for trial in order {
+            assert_eq!(store.next_trial(&session.session_id).await.unwrap(), open.first().copied());
+            append(&store, &session, answer(trial, true, 500.0)).await;
+            open.retain(|other| *other != trial);
+        }
+        assert_eq!(store.next_trial(&session.session_id).await.unwrap(), None);
+    }
+    // One whose first answers are in the first chain.
+    let folder = fixture("answered");
+    let store = Store::open(folder.path()).await.unwrap();
+    let session = half(&store).await;
+    let mut answered = store.answered(&session.session_id).await.unwrap();
+    let trials = store.trials(&session.session_id).await.unwrap();
+    let open =
+        |answered: &[u32]| trials.iter().map(|t| t.trial.trial_index).find(|index| !answered.contains(index));
+    assert_eq!(store.next_trial(&session.session_id).await.unwrap(), open(&answered));
+    let first = open(&answered).unwrap();
+    assert!(first > 0, "it is half finished");
+    append(&store, &session, answer(first, true, 500.0)).await;
+    answered.push(first);
+    assert_eq!(store.next_trial(&session.session_id).await.unwrap(), open(&answered));
 }
 
 #[tokio::test(flavor = "multi_thread")]

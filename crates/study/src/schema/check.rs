@@ -3,33 +3,46 @@
 use super::{FieldError, Record, escaped, list, words};
 use serde_json::{Map, Value};
 
-/// A walk through a value beside its schema.
+/// A walk through a value beside its schema. What is right costs no memory: places and rules are put into words where something is wrong.
 pub(super) struct Check<'a> {
     record: &'a Record,
-    pointer: String,
-    found: Vec<FieldError>,
+    /// The names down to where the walk is.
+    place: Vec<Step<'a>>,
+    /// What is wrong; `None` where it only matters whether anything is.
+    told: Option<Vec<FieldError>>,
+    wrong: bool,
 }
 
-impl Check<'_> {
+enum Step<'a> {
+    Field(&'a str),
+    Item(usize),
+}
+
+impl<'a> Check<'a> {
     /// Everything in `value` that the record's schema does not allow.
-    pub(super) fn of(record: &Record, value: &Value) -> Vec<FieldError> {
-        let mut check = Check { record, pointer: String::new(), found: Vec::new() };
+    pub(super) fn of(record: &'a Record, value: &'a Value) -> Vec<FieldError> {
+        let mut check = Check { record, place: Vec::new(), told: Some(Vec::new()), wrong: false };
         check.value(&record.schema, value);
-        check.found
+        check.told.unwrap_or_default()
     }
 
     /// Checks `value` and all below it; a value that is wrong in itself is told once, and what is in it is not looked at.
-    fn value(&mut self, schema: &Value, value: &Value) {
+    fn value(&mut self, schema: &'a Value, value: &'a Value) {
         if !self.fits(schema, value) {
-            return self.breach(schema, value, format!("must be {}", self.record.words(schema)));
+            return self.breach(schema, value, |record| format!("must be {}", record.words(schema)));
         }
-        if let Some(target) = schema.get("$ref").map(|_| self.record.resolve(schema)) {
-            self.value(target, value);
+        let composed = |rules: &Map<String, Value>| {
+            rules.keys().any(|key| matches!(key.as_str(), "$ref" | "allOf" | "anyOf" | "oneOf"))
+        };
+        if schema.as_object().is_some_and(composed) {
+            if let Some(target) = schema.get("$ref").map(|_| self.record.resolve(schema)) {
+                self.value(target, value);
+            }
+            for part in list(schema, "allOf") {
+                self.value(part, value);
+            }
+            self.alternatives(schema, value);
         }
-        for part in list(schema, "allOf") {
-            self.value(part, value);
-        }
-        self.alternatives(schema, value);
         match value {
             Value::Object(object) => self.object(schema, object),
             Value::Array(items) => self.items(schema, items),
@@ -62,7 +75,7 @@ impl Check<'_> {
     }
 
     /// `anyOf` and `oneOf`. Where all but one alternative is null, what is wrong is told of that one's inside.
-    fn alternatives(&mut self, schema: &Value, value: &Value) {
+    fn alternatives(&mut self, schema: &'a Value, value: &'a Value) {
         for (key, most) in [("anyOf", usize::MAX), ("oneOf", 1)] {
             let parts = list(schema, key);
             let fitting = parts.iter().filter(|part| self.is_right(part, value)).count();
@@ -73,53 +86,53 @@ impl Check<'_> {
             match not_null[..] {
                 [only] if fitting == 0 && only_null_beside(parts) => self.value(only, value),
                 _ if fitting == 0 => {
-                    self.breach(schema, value, format!("must be {}", self.record.words(schema)))
+                    self.breach(schema, value, |record| format!("must be {}", record.words(schema)));
                 }
-                _ => {
-                    self.breach(schema, value, format!("must be only one of: {}", self.record.words(schema)));
-                }
+                _ => self
+                    .breach(schema, value, |record| format!("must be only one of: {}", record.words(schema))),
             }
         }
     }
 
     fn is_right(&self, schema: &Value, value: &Value) -> bool {
-        let mut inner = Check { record: self.record, pointer: String::new(), found: Vec::new() };
+        let mut inner = Check { record: self.record, place: Vec::new(), told: None, wrong: false };
         inner.value(schema, value);
-        inner.found.is_empty()
+        !inner.wrong
     }
 
-    fn object(&mut self, schema: &Value, object: &Map<String, Value>) {
+    fn object(&mut self, schema: &'a Value, object: &'a Map<String, Value>) {
         let properties = schema["properties"].as_object();
         let property = |name: &str| properties.and_then(|known| known.get(name));
         for name in list(schema, "required").iter().filter_map(Value::as_str) {
             if !object.contains_key(name) {
-                let rule = match property(name) {
-                    Some(schema) => format!("must be given: {}", self.record.words(schema)),
-                    None => "must be given".to_owned(),
-                };
-                self.below(name, |at| {
-                    at.found.push(FieldError { pointer: at.pointer.clone(), value: None, rule })
+                self.below(Step::Field(name), |at| {
+                    at.tell(|record| {
+                        let rule = match property(name) {
+                            Some(schema) => format!("must be given: {}", record.words(schema)),
+                            None => "must be given".to_owned(),
+                        };
+                        (None, rule)
+                    });
                 });
             }
         }
         for (name, value) in object {
-            self.below(name, |at| {
+            self.below(Step::Field(name), |at| {
                 if let Some(names) = schema.get("propertyNames")
                     && !at.is_right(names, &Value::from(name.as_str()))
                 {
-                    let rule = format!("has a name that must be {}", at.record.words(names));
-                    at.breach(names, value, rule);
+                    at.breach(names, value, |record| {
+                        format!("has a name that must be {}", record.words(names))
+                    });
                 }
                 match (property(name), schema.get("additionalProperties")) {
                     (Some(schema), _) => at.value(schema, value),
                     (None, Some(Value::Bool(false))) => {
-                        let known: Vec<&str> =
-                            properties.into_iter().flatten().map(|(name, _)| name.as_str()).collect();
-                        at.breach(
-                            schema,
-                            value,
-                            format!("is not known here; known are {}", known.join(", ")),
-                        );
+                        at.breach(schema, value, |_| {
+                            let known: Vec<&str> =
+                                properties.into_iter().flatten().map(|(name, _)| name.as_str()).collect();
+                            format!("is not known here; known are {}", known.join(", "))
+                        });
                     }
                     (None, Some(schema)) => at.value(schema, value),
                     (None, None) => {}
@@ -128,27 +141,43 @@ impl Check<'_> {
         }
     }
 
-    fn items(&mut self, schema: &Value, items: &[Value]) {
+    fn items(&mut self, schema: &'a Value, items: &'a [Value]) {
         let first = list(schema, "prefixItems");
         for (index, item) in items.iter().enumerate() {
             if let Some(schema) = first.get(index).or_else(|| schema.get("items")) {
-                self.below(&index.to_string(), |at| at.value(schema, item));
+                self.below(Step::Item(index), |at| at.value(schema, item));
             }
         }
     }
 
-    /// Runs `step` one level down, at `name`.
-    fn below(&mut self, name: &str, step: impl FnOnce(&mut Self)) {
-        let before = self.pointer.len();
-        self.pointer.push('/');
-        self.pointer.push_str(&escaped(name));
-        step(self);
-        self.pointer.truncate(before);
+    /// Walks on one level down.
+    fn below(&mut self, step: Step<'a>, walk: impl FnOnce(&mut Self)) {
+        self.place.push(step);
+        walk(self);
+        self.place.pop();
     }
 
-    fn breach(&mut self, schema: &Value, value: &Value, rule: String) {
-        let value = (schema["writeOnly"] != true).then(|| words::shortened(value));
-        self.found.push(FieldError { pointer: self.pointer.clone(), value, rule });
+    fn breach(&mut self, schema: &Value, value: &Value, rule: impl FnOnce(&Record) -> String) {
+        self.tell(|record| ((schema["writeOnly"] != true).then(|| words::shortened(value)), rule(record)));
+    }
+
+    /// Something is wrong here; what was found and the rule are asked for only where they are told.
+    fn tell(&mut self, what: impl FnOnce(&Record) -> (Option<Value>, String)) {
+        self.wrong = true;
+        if let Some(told) = &mut self.told {
+            let (value, rule) = what(self.record);
+            told.push(FieldError { pointer: self.place.iter().map(Step::pointer).collect(), value, rule });
+        }
+    }
+}
+
+impl Step<'_> {
+    /// As a JSON Pointer has it.
+    fn pointer(&self) -> String {
+        match self {
+            Step::Field(name) => format!("/{}", escaped(name)),
+            Step::Item(index) => format!("/{index}"),
+        }
     }
 }
 

@@ -87,9 +87,8 @@ fn what_breaks_a_rule_beside_the_choice_is_an_answer_without_it_and_named() {
         let Observation::Choice(choice) = rules.observe(&shown, &answer).unwrap();
         assert_eq!(choice.rt_ms.is_nan(), field == "rt");
     }
-    let half = rules
-        .record()
-        .sound(&json!({ "choice": "left", "rt": 1, "frames": { "left": { "fps": -1, "shown": 24 } } }));
+    let sent = json!({ "choice": "left", "rt": 1, "frames": { "left": { "fps": -1, "shown": 24 } } });
+    let half = rules.record().sound(&sent);
     assert_eq!(half.value["frames"]["left"], json!({ "fps": null, "shown": 24 }), "only what is wrong goes");
     assert_eq!(
         rules.record().sound(&json!({ "choice": "left" })).broken,
