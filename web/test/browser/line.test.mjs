@@ -80,10 +80,8 @@ test("a page that was frozen while its plan went to somebody else shows the tria
   await answered;
   // The refusal may come before the next trial or during it.
   const again = v.page.getByText("other pictures have been chosen for you meanwhile");
-  if (!(await again.isVisible())) {
-    await position(v.page, 1);
-    await v.hook("choice-left").click();
-  }
+  const next = position(v.page, 1).then(() => true, () => false);
+  if (await Promise.race([again.waitFor().then(() => false), next])) await v.hook("choice-left").click();
   await again.waitFor();
   assert.deepEqual(stored(v.mock), [[]]);
   await position(v.page, 0);
