@@ -167,7 +167,7 @@ function rehearsal(study: string): HTMLElement {
     };
     return h("button", { type: "button", "data-testid": `${visit}-link`, onclick: () => void make() }, label);
   };
-  return h("p", { class: "quiet" }, "Try it: ", preview, " (nothing is stored), or make a ", link("pilot", "Pilot link"), " (stored, left out of every analysis) or a ", link("preview", "Preview link"), " for somebody who does not sign in. ", made);
+  return h("p", { class: "quiet rehearsal" }, "Try it: ", preview, " (nothing is stored), or make a ", link("pilot", "Pilot link"), " (stored, left out of every analysis) or a ", link("preview", "Preview link"), " for somebody who does not sign in. ", made);
 }
 
 function participants(results: Results | null): Node[] {
@@ -203,10 +203,10 @@ function leftOut(results: Results | null): Node[] {
 function downloaded(downloads: Results["downloads"]): Node[] {
   if (downloads.length === 0) return [];
   const several = downloads.length > 1;
-  const each = downloads.flatMap(({ size, bytes }, i) => [i > 0 ? ", " : "", number(`${fixed(bytes / 1e6, 1)} MB`, bytes), ...(several ? [` at ${size.join(" × ")}`] : [])]);
+  const each = downloads.flatMap(({ size, bytes }, i) => [i > 0 ? " or " : "", number(`${fixed(bytes / 1e6, 1)} MB`, bytes), ...(several ? [` (${size.join(" × ")})`] : [])]);
   const heavy = downloads.filter(({ is_heavy }) => is_heavy).map(({ size }) => size.join(" × "));
-  const advice = `That takes more than half a minute on a slow line (1.6 Mbit/s)${several ? ` at ${heavy.join(" and ")}` : ""}. Pixels are bytes: fewer items, shorter films or fewer frames a second help${several ? ", and so does leaving a size out" : ""}.`;
-  return [h("p", { class: "quiet", "data-testid": "downloads" }, "A participant downloads ", ...each, several ? ", whichever size fits the window. " : ". ", heavy.length > 0 ? advice : "")];
+  const advice = `${several ? `At ${heavy.join(" and ")} that` : "That"} takes more than half a minute on a slow line (1.6 Mbit/s). Pixels are bytes: fewer items, shorter films or fewer frames a second help${several ? ", and so does leaving a size out" : ""}.`;
+  return [h("p", { class: "quiet", "data-testid": "downloads" }, "A participant downloads ", ...each, several ? ", by the size that fits the window. " : ". ", heavy.length > 0 ? advice : "")];
 }
 
 /** Files of exactly what the page shows, whatever is served later. */
