@@ -270,7 +270,8 @@ impl<'a> Taking<'a> {
             "input": "keyboard", "scale": 1.0, "device_pixel_ratio": 1.0, "viewport": [1280, 800], "refresh_hz": 60.0,
             "reload_count": 0, "timestamp": "2026-11-28T10:30:00.000Z",
         });
-        self.call("PUT", &format!("/trials/{trial}"), &body)
+        let plan = self.state["plan"].as_str().expect("a session has a plan");
+        self.call("PUT", &format!("/trials/{trial}?plan={plan}"), &body)
     }
 
     /// Finishes; answers the code.

@@ -6,7 +6,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use kelir_tests::{Server, Taking, binary, edit, free_port, small_data, sql};
+use kelir_tests::{Server, Taking, binary, edit, free_port, kelir_ok, small_data, sql};
 use serde_json::{Value, json};
 
 /// Connections that say nothing, or not enough.
@@ -152,26 +152,68 @@ fn the_log_says_what_was_asked_and_nobodys_secrets() {
     }
 }
 
-#[test]
-fn a_terminal_gets_links_and_warnings_and_a_file_all_that_is_logged() {
-    let (data, port) = (small_data(), free_port());
-    edit(data.path(), "studies/small.toml", "cc=[CODE]", "cc=");
-    let (folder, pid) = (data.path().display(), data.path().join("pid"));
+/// A server at a terminal, of a user who gives everybody rights to what they make.
+fn start_at_terminal(data: &Path, port: u16) -> Child {
     let serve = format!(
-        "echo $$ > {}; unset KELIR_LOG; exec {} serve --listen 127.0.0.1:{port} --data {folder}",
-        pid.display(),
-        binary().display()
+        "umask 0; echo $$ > {}; unset KELIR_LOG; exec {} serve --listen 127.0.0.1:{port} --data {}",
+        data.join("pid").display(),
+        binary().display(),
+        data.display()
     );
     let mut terminal = Command::new("script");
-    terminal.args(["-qec", &serve, "/dev/null"]).stdin(Stdio::null()).stdout(Stdio::piped());
-    let mut terminal = terminal.spawn().unwrap();
-    can_be_taken(port);
-    let server = std::fs::read_to_string(pid).unwrap();
+    terminal.args(["-qec", &serve, "/dev/null"]).stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap()
+}
+
+/// Stops it; what was to be seen.
+fn stop_at_terminal(data: &Path, mut terminal: Child) -> String {
+    let server = std::fs::read_to_string(data.join("pid")).unwrap();
     assert!(Command::new("kill").arg(server.trim()).status().unwrap().success());
     let mut seen = String::new();
     terminal.stdout.take().unwrap().read_to_string(&mut seen).unwrap();
     assert!(terminal.wait().unwrap().success(), "{seen}");
-    let (kept, link) = (format!("{folder}/server.log"), format!(":{port}/study/small"));
+    seen
+}
+
+/// Paths that others than their owner have rights to, and how many there are in all.
+fn open_to_others(path: &Path, found: &mut Vec<String>) -> usize {
+    let known = path.symlink_metadata().unwrap();
+    if known.permissions().mode() & 0o077 != 0 {
+        found.push(format!("{} {:o}", path.display(), known.permissions().mode()));
+    }
+    let inside = if known.is_dir() { Some(std::fs::read_dir(path).unwrap()) } else { None };
+    1 + inside.into_iter().flatten().map(|entry| open_to_others(&entry.unwrap().path(), found)).sum::<usize>()
+}
+
+#[test]
+fn nobody_else_has_rights_to_anything_in_the_folder_of_a_served_study() {
+    let (data, port) = (small_data(), free_port());
+    let folder = data.path().to_str().unwrap();
+    let terminal = start_at_terminal(data.path(), port);
+    can_be_taken(port);
+    let files = ["kelir.sqlite", "kelir.sqlite-wal", "kelir.lock", "scenes.json", "server.log", "link-key"];
+    for name in [&files[..], &["researcher-password", "stimuli", "studies/small.toml"]].concat() {
+        assert!(data.path().join(name).exists(), "{name} is looked at too");
+    }
+    // Looked at before each command: whoever opens the folder closes what was left open.
+    let mut found = Vec::new();
+    assert!(open_to_others(data.path(), &mut found) > 20);
+    for command in [["study", "link", "small"], ["study", "versions", "small"], ["chain", "check", "small"]] {
+        kelir_ok(&[&command[..], &["--data", folder]].concat());
+        open_to_others(data.path(), &mut found);
+    }
+    stop_at_terminal(data.path(), terminal);
+    open_to_others(data.path(), &mut found);
+    assert_eq!(found, [""; 0]);
+}
+
+#[test]
+fn a_terminal_gets_links_and_warnings_and_a_file_all_that_is_logged() {
+    let (data, port) = (small_data(), free_port());
+    edit(data.path(), "studies/small.toml", "cc=[CODE]", "cc=");
+    let terminal = start_at_terminal(data.path(), port);
+    can_be_taken(port);
+    let seen = stop_at_terminal(data.path(), terminal);
+    let (kept, link) = (format!("{}/server.log", data.path().display()), format!(":{port}/study/small"));
     for said in [link.as_str(), &kept, "completion.redirect"] {
         assert!(seen.contains(said), "{said} in\n{seen}");
     }
@@ -182,7 +224,6 @@ fn a_terminal_gets_links_and_warnings_and_a_file_all_that_is_logged() {
     {
         assert!(log.contains(said), "{said} in\n{log}");
     }
-    assert_eq!(std::fs::metadata(&kept).unwrap().permissions().mode() & 0o777, 0o600);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use kelir_tests::{Server, Taking, small_data, sql, take};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Two hours pass in which nobody of these studies is heard of.
 fn hours_pass(data: &Path) {
@@ -44,6 +44,11 @@ fn who_comes_back_late_shares_no_place_or_is_counted() {
     let back = Taking::resume(&server, &late.id, &late.token);
     assert_eq!(slot(data.path(), &late.id), 1);
     assert_ne!(back.state["trials"], late.state["trials"], "the mirror's plan");
+    // A page that was frozen before shows the old plan still: what is chosen there is nobody's choice of the new one.
+    let (status, told) = late.answer(0, "left", 900.0);
+    assert_eq!((status, &told["code"]), (409, &json!("plan_changed")), "{told}");
+    let stored = "SELECT count(*) AS n FROM answers";
+    assert_eq!(sql(&data.path().join("kelir.sqlite"), stored)[0]["n"], 4, "the other's alone");
     let again = Taking::resume(&server, &late.id, &late.token);
     assert_eq!(again.state["trials"], back.state["trials"], "and no other from then on");
     complete(&back, 0);

@@ -58,7 +58,7 @@ fn three_participants_from_the_welcome_to_the_t_test() {
             assert_eq!(row["trial_index"], index);
             assert_eq!(row["choice"], trial["choice"]);
             // A phone of three device pixels to a CSS pixel has room for the larger size.
-            let width = if participant["name"] == "budi" { 1110 } else { 592 };
+            let width = if participant["name"] == "budi" { 1008 } else { 592 };
             assert_eq!((&row["width"], &row["right_width"]), (&json!(width), &json!(width)));
             for side in ["left", "right"] {
                 let pixels = pixels_of(data.path(), row[format!("{side}_sha256")].as_str().unwrap());

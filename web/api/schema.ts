@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. d035aa5fd935c5dd1cc65713ba25197040a7fbf8370b1c14b3a05a1a48790fcf a256f1146bb8826c0206de57374e9480ab8d0c9e5b0ef50312646b88470b0e66
+// Generated from openapi.json by `npm run types`; do not edit. b2db050e6a2e55d797ef4bdd7b851e73e51268856b5276a394148d05845d7643 086086b18718ea00a2d171f0dfb746f37124f9b7b37d08ad03edf581965637c0
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -1227,6 +1227,18 @@ export interface components {
             /** @description Sizes [width, height] at which each stimulus is made, by rising width, in pixels; none: the study's `size` alone. */
             sizes?: number[][];
         };
+        /** @description What a participant downloads of a version at one of its sizes. */
+        Download: {
+            /**
+             * Format: int64
+             * @description Bytes of all that may be shown.
+             */
+            bytes: number;
+            /** @description Whether that takes more than half a minute on a slow line (1.6 Mbit/s). */
+            is_heavy: boolean;
+            /** @description [width, height] in pixels. */
+            size: number[];
+        };
         /** @description How far a mean lies from its null value, in standard deviations. */
         EffectSize: {
             /**
@@ -1937,7 +1949,7 @@ export interface components {
             type: string;
         };
         /** @description What kind of problem it is. */
-        ProblemCode: "bad_body" | "bad_json" | "invalid_parameter" | "ambiguous_version" | "unauthorized" | "wrong_password" | "cross_site" | "link_refused" | "not_found" | "method_not_allowed" | "no_consent" | "already_answered" | "already_begun" | "already_finished" | "incomplete" | "too_large" | "not_json" | "invalid_field" | "internal" | "unavailable" | "not_ready" | "stimuli_failed";
+        ProblemCode: "bad_body" | "bad_json" | "invalid_parameter" | "ambiguous_version" | "unauthorized" | "wrong_password" | "cross_site" | "link_refused" | "not_found" | "method_not_allowed" | "no_consent" | "already_answered" | "plan_changed" | "already_begun" | "already_finished" | "incomplete" | "too_large" | "not_json" | "invalid_field" | "internal" | "unavailable" | "not_ready" | "stimuli_failed";
         /** @description How far the stimuli are. */
         Progress: {
             /** @description Stimuli that are ready. */
@@ -2250,6 +2262,8 @@ export interface components {
              * @description The first decided trial without an answer; null when there is none.
              */
             next_trial: number | null;
+            /** @description Which plan these are of: the session has another one where it was decided anew. Absent in a preview, whose plan stays. */
+            plan?: string;
             /** @description Where to go on to, once completed, if the study leads anywhere. */
             redirect?: string;
             /** @description Its id (UUID v7). */
@@ -2260,7 +2274,7 @@ export interface components {
             study: components["schemas"]["Study"];
             /** @description The study's id. */
             study_id: string;
-            /** @description The trials that are decided so far, by index from 0. The list only grows. */
+            /** @description The trials that are decided so far, by index from 0. The list of a plan only grows. */
             trials: components["schemas"]["Trial"][];
         };
         /** @description How far a session is. */
@@ -2623,6 +2637,8 @@ export interface components {
             different_stimuli: components["schemas"]["DifferentStimulus"][];
             /** @description In which size whom a stimulus is shown, in words. */
             display: string;
+            /** @description What a participant downloads at each of the sizes; empty where some stimuli are not packed. */
+            downloads: components["schemas"]["Download"][];
             /** @description Who is left out by the study's rules of screening, and why. */
             excluded: components["schemas"]["Excluded"][];
             /** @description Other versions of the study that have sessions; their answers are not in these results. */
@@ -3788,6 +3804,11 @@ export interface operations {
             query?: {
                 /** @description Number of trials that the page knows: those from this index on are told. Absent: none are. */
                 known?: number;
+                /**
+                 * @description The `plan` of the session that the trial was shown of. Where it has another one now, the answer is refused. Absent: it is taken to be of
+                 *     the one that it has.
+                 */
+                plan?: string;
             };
             header?: never;
             path: {
@@ -4262,6 +4283,11 @@ export interface operations {
             query?: {
                 /** @description Number of trials that the page knows: those from this index on are told. Absent: none are. */
                 known?: number;
+                /**
+                 * @description The `plan` of the session that the trial was shown of. Where it has another one now, the answer is refused. Absent: it is taken to be of
+                 *     the one that it has.
+                 */
+                plan?: string;
             };
             header?: never;
             path: {
@@ -4323,7 +4349,7 @@ export interface operations {
                     };
                 };
             };
-            /** @description `no_consent`: An answer can be stored only after consent. `already_answered`: The trial has another answer already; `stored` is what stands. */
+            /** @description `no_consent`: An answer can be stored only after consent. `already_answered`: The trial has another answer already; `stored` is what stands. `plan_changed`: The trial was shown of a plan that has been decided anew since: it is to be shown again, of the plan that the session has now. */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -4331,7 +4357,7 @@ export interface operations {
                 content: {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
-                        code: "no_consent" | "already_answered";
+                        code: "no_consent" | "already_answered" | "plan_changed";
                     };
                 };
             };
@@ -4404,6 +4430,11 @@ export interface operations {
             query?: {
                 /** @description Number of trials that the page knows: those from this index on are told. Absent: none are. */
                 known?: number;
+                /**
+                 * @description The `plan` of the session that the trial was shown of. Where it has another one now, the answer is refused. Absent: it is taken to be of
+                 *     the one that it has.
+                 */
+                plan?: string;
             };
             header?: never;
             path: {
@@ -4465,7 +4496,7 @@ export interface operations {
                     };
                 };
             };
-            /** @description `no_consent`: An answer can be stored only after consent. `already_answered`: The trial has another answer already; `stored` is what stands. */
+            /** @description `no_consent`: An answer can be stored only after consent. `already_answered`: The trial has another answer already; `stored` is what stands. `plan_changed`: The trial was shown of a plan that has been decided anew since: it is to be shown again, of the plan that the session has now. */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -4473,7 +4504,7 @@ export interface operations {
                 content: {
                     "application/problem+json": components["schemas"]["Problem"] & {
                         /** @enum {string} */
-                        code: "no_consent" | "already_answered";
+                        code: "no_consent" | "already_answered" | "plan_changed";
                     };
                 };
             };

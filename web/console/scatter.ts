@@ -2,6 +2,7 @@
 import { s } from "../shared/dom.ts";
 import { fixed, significant } from "../shared/format.ts";
 import type { BlockReport, Stimulus } from "./api.ts";
+import { placed } from "./labels.ts";
 import { figure } from "./plots.ts";
 import { measuredError } from "./provenance.ts";
 
@@ -88,20 +89,19 @@ export function errorPlot(all: readonly Point[], width: number): SVGSVGElement {
   for (const p of all) {
     svg.append(s("line", { class: p.target ? "whisker target" : "whisker", x1: x(p.error), x2: x(p.error), y1: y(p.interval.low), y2: y(p.interval.high) }));
   }
+  const named = all.filter((p) => p.target);
+  const dots = all.map((p) => ({ left: x(p.error) - 8, right: x(p.error) + 8, top: y(p.share) - 8, bottom: y(p.share) + 8 }));
+  const whiskers = all.map((p) => ({ left: x(p.error) - 3, right: x(p.error) + 3, top: y(p.interval.high), bottom: y(p.interval.low) }));
+  const room = { ...box, left: box.left + 2, bottom: box.bottom - 2 };
+  const labels = placed(named.map((p) => ({ x: x(p.error), y: y(p.share), width: 7.2 * p.item.length })), [...dots, ...whiskers], room);
+  named.forEach((p, i) => {
+    const label = labels[i];
+    if (label === undefined) return;
+    const { box, anchor, led } = label;
+    const [near, middle] = [anchor === "start" ? box.left : box.right, (box.top + box.bottom) / 2];
+    if (led) svg.append(s("line", { class: "join", x1: x(p.error), y1: y(p.share), x2: near + (anchor === "start" ? -3 : 3), y2: middle }));
+    svg.append(s("text", { class: "name", x: near, y: middle + 4, "text-anchor": anchor }, p.item));
+  });
   for (const p of all) svg.append(mark(p, others, x(p.error), y(p.share)));
-
-  // Names from the top down, each at its point or as near below the last one as it can stand.
-  const named = all.filter((p) => p.target).sort((a, b) => b.share - a.share);
-  const taken: Array<{ left: number; right: number; y: number }> = [];
-  for (const p of named) {
-    const cx = x(p.error);
-    const length = 7.2 * p.item.length;
-    const left = cx - box.left > length + 14 && cx > (box.left + box.right) / 2;
-    const span = left ? { left: cx - 12 - length, right: cx - 12 } : { left: cx + 12, right: cx + 12 + length };
-    let level = y(p.share) + 4;
-    while (taken.some((t) => t.left < span.right && span.left < t.right && Math.abs(t.y - level) < 15)) level += 5;
-    taken.push({ ...span, y: level });
-    svg.append(s("text", { class: "name", x: left ? cx - 12 : cx + 12, y: level, "text-anchor": left ? "end" : "start" }, p.item));
-  }
   return svg;
 }

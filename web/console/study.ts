@@ -1,6 +1,6 @@
 /** One study: who took part, what they chose, what they were shown. */
 import { h } from "../shared/dom.ts";
-import { clockTime, count } from "../shared/format.ts";
+import { clockTime, count, fixed } from "../shared/format.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
 import { addressOf, fetchPaper, fetchReport, fetchResults, fetchStudies, fetchVersions, makeLink, type Results, type Selection, type StudySummary, type StudyVersion } from "./api.ts";
 import { choices } from "./choices.ts";
@@ -78,10 +78,10 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
     list?.recount(versions);
     section("participants", [results?.participants, results?.standing, results?.excluded], () => participants(results));
     if (results !== null) {
-      const { blocks, scale, standing, stimuli, different_stimuli, display } = results;
+      const { blocks, scale, standing, stimuli, different_stimuli, display, downloads } = results;
       section("choices", [blocks, scale, standing.summary], () => choices(results));
       judge(selection, results);
-      section("stimuli", [stimuli, different_stimuli, display], () => [h("h2", {}, "Stimuli"), h("p", { class: "quiet", "data-testid": "display" }, display), ...(stimuli.length > 0 ? gallery(stimuli, different_stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
+      section("stimuli", [stimuli, different_stimuli, display, downloads], () => [h("h2", {}, "Stimuli"), h("p", { class: "quiet", "data-testid": "display" }, display), ...downloaded(downloads), ...(stimuli.length > 0 ? gallery(stimuli, different_stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
       section("data", [results.version, selection.pooled], () => data({ ...selection, version: results.version }));
     }
     updated.textContent = `Updated ${clockTime(new Date())}`;
@@ -167,7 +167,7 @@ function rehearsal(study: string): HTMLElement {
     };
     return h("button", { type: "button", "data-testid": `${visit}-link`, onclick: () => void make() }, label);
   };
-  return h("p", { class: "quiet" }, "Try it: ", preview, " (nothing is stored), or make a ", link("pilot", "Pilot link"), " (stored, left out of every analysis) or a ", link("preview", "Preview link"), " for somebody who does not sign in. ", made);
+  return h("p", { class: "quiet rehearsal" }, "Try it: ", preview, " (nothing is stored), or make a ", link("pilot", "Pilot link"), " (stored, left out of every analysis) or a ", link("preview", "Preview link"), " for somebody who does not sign in. ", made);
 }
 
 function participants(results: Results | null): Node[] {
@@ -197,6 +197,16 @@ function leftOut(results: Results | null): Node[] {
     ...list("What was noticed of sessions", standing.flagged.map(({ flag, meaning, sessions, excludes }) => h("li", {}, h("code", {}, flag), `: ${count(sessions, "session")}, ${meaning}${excludes ? "; left out by your rules" : ""}`))),
     ...(standing.balance_summary === "" ? [] : [h("p", { class: "quiet", "data-testid": "balance" }, standing.balance_summary)]),
   ];
+}
+
+/** What participants download, and what can be done where that is much. */
+function downloaded(downloads: Results["downloads"]): Node[] {
+  if (downloads.length === 0) return [];
+  const several = downloads.length > 1;
+  const each = downloads.flatMap(({ size, bytes }, i) => [i > 0 ? " or " : "", number(`${fixed(bytes / 1e6, 1)} MB`, bytes), ...(several ? [` (${size.join(" × ")})`] : [])]);
+  const heavy = downloads.filter(({ is_heavy }) => is_heavy).map(({ size }) => size.join(" × "));
+  const advice = `${several ? `At ${heavy.join(" and ")} that` : "That"} takes more than half a minute on a slow line (1.6 Mbit/s). Pixels are bytes: fewer items, shorter films or fewer frames a second help${several ? ", and so does leaving a size out" : ""}.`;
+  return [h("p", { class: "quiet", "data-testid": "downloads" }, "A participant downloads ", ...each, several ? ", by the size that fits the window. " : ". ", heavy.length > 0 ? advice : "")];
 }
 
 /** Files of exactly what the page shows, whatever is served later. */

@@ -50,9 +50,10 @@ export const giveConsent = (who: Credentials) => ask<State>(`${session(who.sessi
 /** The method by which answers get through. */
 let method: "PUT" | "POST" = "PUT";
 
-/** Sends the JSON of an answer; `known` trials of the plan are known here, and those decided since come back. */
-export async function putAnswer(who: Credentials, trialIndex: number, text: string, known?: number): Promise<Acknowledgement> {
-  const path = `${session(who.session_id)}/trials/${trialIndex}${known === undefined ? "" : `?known=${known}`}`;
+/** Sends the JSON of an answer to a trial of `plan`; `known` of its trials are known here, and those decided since come back. */
+export async function putAnswer(who: Credentials, trialIndex: number, text: string, plan?: string, known?: number): Promise<Acknowledgement> {
+  const query = String(new URLSearchParams({ ...(known === undefined ? {} : { known: String(known) }), ...(plan === undefined ? {} : { plan }) }));
+  const path = `${session(who.session_id)}/trials/${trialIndex}${query === "" ? "" : `?${query}`}`;
   const send = () => ask<Acknowledgement>(path, ["acknowledged"], { method, token: who.token, text, keepalive: true });
   try {
     return await send();

@@ -72,7 +72,7 @@ function choose({ sizes, fit }: Offered, fits: (shown: Shown) => boolean): Shown
   const all = sizes.map(([w = 0, h = 0]) => [w, h] as const);
   const times = (pixels: Pixels, k: number): Shown => ({ pixels, w: k * pixels[0], h: k * pixels[1] });
   if (fit === "fill") return filling(all, fits);
-  const native = all.filter((pixels) => fits(times(pixels, 1))).at(-1);
+  const native = all.filter((pixels) => fits(times(pixels, 1))).pop();
   if (native === undefined) return shrunk(all[0] ?? [LEAST, LEAST], fits);
   let k = 1;
   while (fit === "integer" && fits(times(native, k + 1))) k += 1;
@@ -81,7 +81,7 @@ function choose({ sizes, fit }: Offered, fits: (shown: Shown) => boolean): Shown
 
 /** As large as fits: of the smallest size that has at least as many pixels, or of the largest. */
 function filling(sizes: readonly Pixels[], fits: (shown: Shown) => boolean): Shown {
-  const largest = sizes.at(-1) ?? [LEAST, LEAST];
+  const largest = sizes[sizes.length - 1] ?? [LEAST, LEAST];
   let w = LEAST;
   while (fits(scaled(largest, w + 1))) w += 1;
   return shrunk(sizes.find(([own]) => own >= w) ?? largest, fits, w);

@@ -11,6 +11,8 @@ export interface Waiting {
   index: number;
   /** The JSON that is sent, to the byte: the server tells a resend from another answer by it. */
   body: string;
+  /** The plan that its trial was shown of, where the server tells plans apart. */
+  plan?: string | undefined;
   /** What the answer was in full, once its body is only what it says itself. */
   whole?: string;
   /** Set when the server refused it for good: it is kept, and not sent again by itself. */
@@ -48,9 +50,11 @@ const TRIES_IN_FULL = 3;
 export type Line = "idle" | "sending" | "waiting" | "refused";
 
 export interface Hooks {
-  send(index: number, body: string): Promise<Acknowledgement>;
+  send(index: number, body: string, plan?: string): Promise<Acknowledgement>;
   /** The server has this trial: our answer, which it acknowledged, or (`null`) an earlier one that stands. */
   onStored(index: number, acknowledged: Acknowledgement | null): void;
+  /** The session has another plan by now than the one that was answered: the answer is none, and is gone. */
+  onOtherPlan(): void;
   onLine(line: Line): void;
   setTimer(run: () => void, ms: number): unknown;
   clearTimer(timer: unknown): void;
@@ -88,9 +92,9 @@ export class Outbox {
   }
 
   /** Keeps an answer and starts sending. The first answer to a trial stands. */
-  put(index: number, answer: Answer): void {
+  put(index: number, answer: Answer, plan?: string): void {
     if (!this.indices.has(index)) {
-      this.#write([...this.waiting, { index, body: JSON.stringify(answer) }].sort((a, b) => a.index - b.index));
+      this.#write([...this.waiting, { index, body: JSON.stringify(answer), plan }].sort((a, b) => a.index - b.index));
     }
     void this.flush();
   }
@@ -140,13 +144,16 @@ export class Outbox {
 
   /** True when the entry left the queue or was set aside, false when it has to wait. */
   async #deliver(entry: Waiting): Promise<boolean> {
-    const { index, body } = entry;
+    const { index, body, plan } = entry;
     let acknowledged: Acknowledgement;
     try {
-      acknowledged = await this.#hooks.send(index, body);
+      acknowledged = await this.#hooks.send(index, body, plan);
     } catch (error) {
-      if (error instanceof Refused && error.status === 409 && error.code === "already_answered") {
-        this.#remove(index, null);
+      const code = error instanceof Refused && error.status === 409 ? error.code : "";
+      if (code === "already_answered" || code === "plan_changed") {
+        this.#remove(index);
+        if (code === "already_answered") this.#hooks.onStored(index, null);
+        else this.#hooks.onOtherPlan();
         return true;
       }
       const short = entry.whole === undefined ? light(body) : null;
@@ -165,7 +172,8 @@ export class Outbox {
       return true;
     }
     this.#failures = 0;
-    this.#remove(index, acknowledged);
+    this.#remove(index);
+    this.#hooks.onStored(index, acknowledged);
     return true;
   }
 
@@ -173,9 +181,8 @@ export class Outbox {
     return this.waiting.find((entry) => entry.refused === undefined);
   }
 
-  #remove(index: number, acknowledged: Acknowledgement | null): void {
+  #remove(index: number): void {
     this.#write(this.waiting.filter((entry) => entry.index !== index));
-    this.#hooks.onStored(index, acknowledged);
   }
 
   #replace(changed: Waiting): void {

@@ -46,6 +46,8 @@ export class Session {
   gone = false;
   /** Trials that are taken again because their answers were refused. */
   readonly #again = new Set<number>();
+  /** Whether the server has another plan for the session than the one told. */
+  #replanned = false;
   /** Whether the page can't go on before its answers are stored. */
   #waiting = false;
 
@@ -148,7 +150,7 @@ export class Session {
   answer(trial: api.Trial, data: Record<string, unknown>): void {
     const answer = { ...data, reload_count: this.#who?.reloads ?? 0, timestamp: new Date().toISOString() };
     say("trial", null);
-    this.outbox.put(trial.trial_index, answer as unknown as api.Answer);
+    this.outbox.put(trial.trial_index, answer as unknown as api.Answer, this.state?.plan);
   }
 
   /** Resolves when every answer is stored, or refused for good. */
@@ -161,8 +163,11 @@ export class Session {
     }
   }
 
-  /** Gives up each answer that was refused for the first time: its trial is left to be taken again. Says whether there was one. */
-  takeAgain(): boolean {
+  /**
+   * Gives up each answer that was refused for the first time, and asks for the plan that the session has by now: what was given up is left to be taken
+   * again. Says whether there was any.
+   */
+  async takeAgain(): Promise<boolean> {
     const again = this.outbox.refused.filter(({ index }) => !this.#again.has(index));
     for (const { index } of again) {
       this.#again.add(index);
@@ -172,7 +177,13 @@ export class Session {
       say("answers", null);
       say("trial", words("answer-again"));
     }
-    return again.length > 0;
+    const replanned = this.#replanned;
+    if (replanned) {
+      this.#replanned = false;
+      await this.refresh();
+      say("trial", words("answer-other"));
+    }
+    return again.length > 0 || replanned;
   }
 
   /** Waits until the server, which has all answers, has decided on more trials or says that there are no more. */
@@ -207,8 +218,9 @@ export class Session {
       const left = new Outbox(`kelir:outbox:${who.session_id}`, this.#store, {
         ...timers,
         onStored: () => {},
+        onOtherPlan: () => {},
         onLine: () => {},
-        send: (index, body) => api.putAnswer(who, index, body),
+        send: (index, body, plan) => api.putAnswer(who, index, body, plan),
       });
       if (left.waiting.length > 0) void left.flush();
       else if (other.includes(LEFT)) this.#store.remove(other);
@@ -229,9 +241,9 @@ export class Session {
     const who = this.#who;
     return new Outbox(`kelir:outbox:${who?.session_id ?? "none"}`, this.#store, {
       ...timers,
-      send: async (index, body) => {
+      send: async (index, body, plan) => {
         try {
-          return await api.putAnswer(who as Remembered, index, body, this.state?.trials.length);
+          return await api.putAnswer(who as Remembered, index, body, plan, this.state?.trials.length);
         } catch (error) {
           if (error instanceof Refused && error.code === "unauthorized") this.gone = true;
           throw error;
@@ -242,6 +254,7 @@ export class Session {
         const trials = withAnswered(this.state.trials, index, acknowledged?.trials);
         this.state = { ...this.state, trials, more: acknowledged?.more ?? this.state.more };
       },
+      onOtherPlan: () => (this.#replanned = true),
       onLine: (line) => {
         const kept = this.#store.durable ? (this.#waiting ? "answers-kept-waiting" : "answers-kept") : this.#waiting ? "answers-held-waiting" : "answers-held";
         const refused = this.#waiting ? "answers-refused-waiting" : "answers-refused";

@@ -71,7 +71,7 @@ export class Visit {
     if (this.#session.state?.consented !== true) return this.#consent(on_finish);
     if (!this.#instructed && !this.#session.begun) return this.#instructions(kinds, on_finish);
     this.#known();
-    this.#session.takeAgain();
+    await this.#session.takeAgain();
     await this.#fetch();
     const trial = this.#session.remaining[0] ?? (await this.#left());
     return trial === null ? null : this.#trial(trial, await this.#kindFor(trial), on_finish);
@@ -173,7 +173,7 @@ export class Visit {
       await patiently(waiting, this.#session.settled());
       this.#known();
       const refused = this.#session.outbox.refused.map((entry) => entry.refused ?? "");
-      if (refused.length === 0 || this.#session.takeAgain()) return;
+      if ((await this.#session.takeAgain()) || refused.length === 0) return;
       await askAgain(waiting.screen, refused, this.#session.id);
       await this.#session.outbox.retryRefused();
     }

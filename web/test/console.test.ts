@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { addressOf, type BlockReport, type Stimulus, type StudySummary, type StudyVersion } from "../console/api.ts";
 import { flatten, measuredError, standardError } from "../console/provenance.ts";
+import { type Box, placed } from "../console/labels.ts";
 import { points } from "../console/scatter.ts";
 import { niceTicks } from "../console/strips.ts";
 import { statusText } from "../console/status.ts";
@@ -34,6 +35,23 @@ test("stimuli without a measured error, of other pairs or of unknown conditions 
 test("what is drawn at several sizes is told once, at the smallest", () => {
   const [a, b, c] = [stimulus("a", "pa", 1e-3), { ...stimulus("a", "pa", 2e-3), size: [1110, 624] }, { ...stimulus("a", "mc", 1e-3), size: [1110, 624] }];
   assert.deepEqual(smallest([b, a, c]), [a, c]);
+});
+
+test("names hide no mark, no interval and no other name, also where points crowd; a line leads to those that stand away", () => {
+  // Four pairs within 25 px at one share, their intervals half the plot high: as the built-in study looks after six participants.
+  const points = [356, 367, 376, 380, 473].map((x) => ({ x, y: 205, width: 80 }));
+  const marks = points.flatMap(({ x, y }) => [{ left: x - 8, right: x + 8, top: y - 8, bottom: y + 8 }, { left: x - 3, right: x + 3, top: 120, bottom: 290 }]);
+  const labels = placed(points, marks, { left: 46, right: 746, top: 58, bottom: 338 });
+  const apart = (a: Box, b: Box) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+  labels.forEach(({ box }, i) => {
+    for (const other of [...marks, ...labels.slice(i + 1).map((label) => label.box)]) assert.ok(apart(box, other), JSON.stringify([box, other]));
+  });
+  assert.deepEqual([labels[0]?.led, labels[1]?.led, labels[4]?.led], [false, true, false]);
+});
+
+test("a name whose side is at the plot's edge stands on the other", () => {
+  const [label] = placed([{ x: 700, y: 205, width: 80 }], [], { left: 46, right: 746, top: 58, bottom: 338 });
+  assert.deepEqual([label?.anchor, label?.led, label?.box.right], ["end", false, 688]);
 });
 
 test("ticks are round and reach the largest value", () => {

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { fitOne, fitPair, inkOn, type Layout, type Offered, srgbCode } from "../participant/layout.ts";
 
 const one: Offered = { sizes: [[592, 333]], fit: "native" };
-const two = (fit: Offered["fit"]): Offered => ({ sizes: [[592, 333], [1110, 624]], fit });
+const two = (fit: Offered["fit"]): Offered => ({ sizes: [[592, 333], [1008, 567]], fit });
 const fit = (roomWidth: number, roomHeight: number, devicePixelRatio = 1, offered = one) => fitPair(offered, { roomWidth, roomHeight, devicePixelRatio });
 
 test("two pictures of the study's size fit a 1280-pixel window side by side at native pixels", () => {
@@ -56,32 +56,36 @@ test("one picture has the room of two", () => {
   assert.ok(alone(591, 333).scale < 1);
   assert.ok(alone(592, 332).scale < 1);
   // Where a pair has room for the smaller size alone, one picture has it for the larger.
-  assert.deepEqual(alone(1900, 900, 1, two("integer")), { pixels: [1110, 624], scale: 1, width: 1110, height: 624 });
-  assert.deepEqual(alone(1109, 900, 1, two("native")).pixels, pixels);
+  assert.deepEqual(alone(1900, 900, 1, two("integer")), { pixels: [1008, 567], scale: 1, width: 1008, height: 567 });
+  assert.deepEqual(alone(1007, 900, 1, two("native")).pixels, pixels);
 });
 
 // Rooms are windows without 10 CSS pixels on either side and without question and position; right values by hand.
 const displays: Array<[string, Offered["fit"], [number, number, number], Omit<Layout, "gap" | "height">]> = [
-  // 370 × 3 = 1110 device pixels; two of 624 and a gap of 84 are 1332 of 1962.
-  ["a phone upright at three device pixels", "native", [370, 654, 3], { arrangement: "stack", pixels: [1110, 624], scale: 1, width: 370 }],
-  // 2 × 1110 + 84 = 2304 of 2472.
-  ["the same phone turned", "native", [824, 280, 3], { arrangement: "side", pixels: [1110, 624], scale: 1, width: 370 }],
-  // 340 × 3 = 1020: the larger has no room; 592 / 3.
-  ["a narrower phone", "integer", [340, 610, 3], { arrangement: "stack", pixels: [592, 333], scale: 1, width: 592 / 3 }],
-  ["the same, filled", "fill", [340, 610, 3], { arrangement: "stack", pixels: [1110, 624], scale: 1020 / 1110, width: 340 }],
+  // 370 × 3 = 1110 device pixels; two of 567 and a gap of 84 are 1218 of 1962.
+  ["a phone upright at three device pixels", "native", [370, 654, 3], { arrangement: "stack", pixels: [1008, 567], scale: 1, width: 336 }],
+  // 2 × 1008 + 84 = 2100 of 2472.
+  ["the same phone turned", "native", [824, 280, 3], { arrangement: "side", pixels: [1008, 567], scale: 1, width: 336 }],
+  // 340 × 3 = 1020 of 1080; 1218 of 1260.
+  ["a phone 360 CSS pixels wide", "integer", [340, 420, 3], { arrangement: "stack", pixels: [1008, 567], scale: 1, width: 336 }],
+  // 392 × 2.625 = 1029 of 1080; 2 × 567 + 73.5 = 1208 of 1260.
+  ["one of as many device pixels, 412 CSS pixels wide", "integer", [392, 480, 2.625], { arrangement: "stack", pixels: [1008, 567], scale: 1, width: 384 }],
+  // 300 × 3 = 900: the larger has no room; 592 / 3.
+  ["a narrower phone", "integer", [300, 500, 3], { arrangement: "stack", pixels: [592, 333], scale: 1, width: 592 / 3 }],
+  ["the same, filled", "fill", [300, 500, 3], { arrangement: "stack", pixels: [1008, 567], scale: 900 / 1008, width: 300 }],
   ["1280 × 720", "integer", [1260, 540, 1], { arrangement: "side", pixels: [592, 333], scale: 1, width: 592 }],
-  // Stacked the larger would take 2 × 624 + 56 = 1304 of 900; the smaller is as large side by side.
+  // Stacked the larger would take 2 × 567 + 51 = 1185 of 900; the smaller is as large side by side.
   ["1920 × 1080", "integer", [1900, 900, 1], { arrangement: "side", pixels: [592, 333], scale: 1, width: 592 }],
-  // 2 × 1110 + 56 = 2276 of 2540; the smaller, twice enlarged, would be 1184 wide, and is not what was drawn for it.
-  ["2560 × 1440", "integer", [2540, 1260, 1], { arrangement: "side", pixels: [1110, 624], scale: 1, width: 1110 }],
-  ["4K at two device pixels", "integer", [1900, 900, 2], { arrangement: "side", pixels: [1110, 624], scale: 1, width: 555 }],
+  // 2 × 1008 + 51 = 2067 of 2540; the smaller, twice enlarged, would be 1184 wide, and is not what was drawn for it.
+  ["2560 × 1440", "integer", [2540, 1260, 1], { arrangement: "side", pixels: [1008, 567], scale: 1, width: 1008 }],
+  ["4K at two device pixels", "integer", [1900, 900, 2], { arrangement: "side", pixels: [1008, 567], scale: 1, width: 504 }],
   // 1725 × 1.1 = 1897 whole device pixels; a gap of 31.
   ["1920 × 1080 at 110%", "integer", [1725, 800, 1.1], { arrangement: "side", pixels: [592, 333], scale: 1, width: 592 / 1.1 }],
-  // 4 × 1110 + 111 = 4551 of 5100.
-  ["5K, whole multiples", "integer", [5100, 2700, 1], { arrangement: "side", pixels: [1110, 624], scale: 2, width: 2220 }],
-  ["5K, never enlarged", "native", [5100, 2700, 1], { arrangement: "side", pixels: [1110, 624], scale: 1, width: 1110 }],
+  // 4 × 1008 + 101 = 4133 of 5100.
+  ["5K, whole multiples", "integer", [5100, 2700, 1], { arrangement: "side", pixels: [1008, 567], scale: 2, width: 2016 }],
+  ["5K, never enlarged", "native", [5100, 2700, 1], { arrangement: "side", pixels: [1008, 567], scale: 1, width: 1008 }],
   // 2 × 2487 + 125 = 5099 of 5100.
-  ["5K, filled", "fill", [5100, 2700, 1], { arrangement: "side", pixels: [1110, 624], scale: 2487 / 1110, width: 2487 }],
+  ["5K, filled", "fill", [5100, 2700, 1], { arrangement: "side", pixels: [1008, 567], scale: 2487 / 1008, width: 2487 }],
   // No size has room: 2 × 171 + 28 = 370.
   ["a small window", "integer", [370, 150, 1], { arrangement: "side", pixels: [592, 333], scale: 171 / 592, width: 171 }],
 ];

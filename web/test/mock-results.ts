@@ -112,7 +112,7 @@ export const results =
     const blocks = taken ? judged : unjudged;
     const common = { study: id, title: found.title, ...choice, standing: standing(taken), stimuli: taken ? stimuliOf(stuff) : [] };
     if (what === "results") {
-      const reply: Schemas["StudyResults"] = { ...common, display: "Pictures are made at 592 × 333 pixels.", excluded: [], blocks };
+      const reply: Schemas["StudyResults"] = { ...common, display: "Pictures are made at 592 × 333 pixels.", downloads: [{ size: [592, 333], bytes: 4_800_000, is_heavy: false }, { size: [1008, 567], bytes: 13_900_000, is_heavy: true }], excluded: [], blocks };
       return [200, reply];
     }
     if (what === "report") {

@@ -8,7 +8,7 @@ import { extname, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import type { components } from "../api/schema.ts";
 import type { Acknowledgement, Completion, State, Study, Trial } from "../participant/api.ts";
-import { type Material, material, study } from "./mock-study.ts";
+import { type Material, material, type Planned, study } from "./mock-study.ts";
 
 type Schemas = components["schemas"];
 
@@ -30,6 +30,8 @@ export interface Session {
   /** By which it was begun. */
   key: string | undefined;
   consented: boolean;
+  /** How often its plan was decided anew: every other one is the mirror of the first. */
+  replans: number;
   answers: Map<number, string>;
   code: string | null;
   body: Schemas["NewSession"];
@@ -78,7 +80,8 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
   const found = (): Study => ({ ...worded(study), translations, response, display: shownAs, per_visit: perVisit, trial_kinds: [...new Set(stuff.trials.map((trial) => trial.trial))] });
   const decided = (s: Session): Trial[] => {
     const count = grow === null ? stuff.trials.length : Math.min(stuff.trials.length, grow.start + s.answers.size);
-    return stuff.trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));
+    const trials = s.replans % 2 === 0 ? stuff.trials : stuff.trials.map(mirrored);
+    return trials.slice(0, count).map((trial) => ({ ...trial, answered: s.answers.has(trial.trial_index) }));
   };
   const more = (s: Session) => decided(s).length < stuff.trials.length;
   const next = (s: Session) => decided(s).find((trial) => !trial.answered)?.trial_index ?? null;
@@ -91,6 +94,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     named: s.body.params?.["PROLIFIC_PID"] !== undefined,
     consented: s.consented,
     trials: s.consented ? decided(s) : [],
+    plan: String(s.replans),
     more: more(s),
     most_trials: grow?.most ?? stuff.trials.length,
     next_trial: s.consented ? next(s) : null,
@@ -105,6 +109,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     }
     const index = Number(rest.match(/^\/trials\/(\d+)$/)?.[1] ?? NaN);
     if ((method === "PUT" || method === "POST") && index < decided(s).length) {
+      if ((query.get("plan") ?? String(s.replans)) !== String(s.replans)) return problem(409, "plan_changed", "The session has another plan by now.");
       const stored = s.answers.get(index);
       if (stored !== undefined && stored !== text) return problem(409, "already_answered", "This trial has an answer already; the first one stands.");
       s.answers.set(index, text);
@@ -147,7 +152,7 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     }
     if (method === "POST" && path === `/api/v1/studies/${study.id}/sessions`) {
       const same = key === undefined ? undefined : [...sessions.values()].find((other) => other.key === key && !other.consented);
-      const s: Session = same ?? { id: `${visitKind === "preview" ? "preview-" : ""}${randomUUID()}`, token: randomUUID(), key, consented: false, answers: new Map(), code: null, body: body as Session["body"] };
+      const s: Session = same ?? { id: `${visitKind === "preview" ? "preview-" : ""}${randomUUID()}`, token: randomUUID(), key, consented: false, replans: 0, answers: new Map(), code: null, body: body as Session["body"] };
       s.token = randomUUID();
       sessions.set(s.id, s);
       const created: Schemas["CreatedSession"] = { ...state(s), token: s.token };
@@ -205,6 +210,12 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
   const close = () => new Promise((resolve) => (server.closeAllConnections(), server.close(resolve)));
   return { url: `http://127.0.0.1:${(server.address() as AddressInfo).port}`, sessions, log, close, stuff };
 }
+
+/** The pair with its sides exchanged; a trial that has no sides stays. */
+const mirrored = (trial: Planned): Planned => {
+  const { left, right } = trial.shown;
+  return left === undefined || right === undefined ? trial : { ...trial, shown: { left: right, right: left } };
+};
 
 async function read(request: IncomingMessage): Promise<string> {
   const chunks: Buffer[] = [];

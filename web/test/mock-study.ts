@@ -68,7 +68,7 @@ export interface Material {
 /** The size of the mock's pictures, and the further one of those that have two. */
 type Size = readonly [number, number];
 const SMALL: Size = [592, 333];
-export const LARGE: Size = [1110, 624];
+export const LARGE: Size = [1008, 567];
 
 /** Drawing takes longer than all else here, so each look is drawn once. */
 const drawn = new Map<string, Uint8Array>();

@@ -28,17 +28,21 @@ function bench(reply: (index: number, tries: number) => unknown, store: Store = 
   const sent: number[] = [];
   const bodies: string[] = [];
   const stored: Array<[number, number | null]> = [];
+  const plans: Array<string | undefined> = [];
   const lines: Line[] = [];
+  let replans = 0;
   const timers = new Map<number, { run: () => void; ms: number }>();
   const outbox = new Outbox("box", store, {
-    send: async (index, body): Promise<Acknowledgement> => {
+    send: async (index, body, plan): Promise<Acknowledgement> => {
       sent.push(index);
       bodies.push(body);
+      plans.push(plan);
       const result = reply(index, sent.length);
       if (result instanceof Error) throw result;
       return { acknowledged: true, next_trial: index + 1, more: false, trials: [] };
     },
     onStored: (index, acknowledged) => stored.push([index, acknowledged?.next_trial ?? null]),
+    onOtherPlan: () => (replans += 1),
     onLine: (line) => lines.push(line),
     setTimer: (run, ms) => (timers.set(timers.size, { run, ms }), timers.size - 1),
     clearTimer: (timer) => timers.delete(timer as number),
@@ -50,7 +54,7 @@ function bench(reply: (index: number, tries: number) => unknown, store: Store = 
     due.forEach(({ run }) => run());
     await settle();
   };
-  return { outbox, sent, bodies, stored, lines, timers, elapse, store };
+  return { outbox, sent, bodies, plans, stored, lines, replans: () => replans, timers, elapse, store };
 }
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 let disks = disk();
@@ -64,6 +68,19 @@ test("an answer leaves the queue when it is acknowledged, and not before", async
   assert.deepEqual([...outbox.indices], []);
   assert.deepEqual(stored, [[0, 1]]);
   assert.deepEqual(sent, [0]);
+});
+
+test("an answer goes with the plan that it is of, also after a reload; where the session has another one by now, it is gone and that is told", async () => {
+  const before = bench(() => new TypeError("offline"));
+  before.outbox.put(0, answer("left"), "morning");
+  before.outbox.put(1, answer("left"), "evening");
+  await settle();
+  before.outbox.stop();
+  const { outbox, plans, stored, lines, replans } = bench((index) => (index === 0 ? new Refused(409, "plan_changed", "Another plan.") : true));
+  await outbox.settled();
+  assert.deepEqual(plans, ["morning", "evening"], "sent once each: no shorter one would be of another plan");
+  assert.deepEqual([outbox.waiting, stored, replans()], [[], [[1, 2]], 1]);
+  assert.equal(lines.at(-1), "idle");
 });
 
 test("a lost line delays and loses nothing; the order is kept", async () => {

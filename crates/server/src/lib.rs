@@ -56,7 +56,7 @@ pub use routes::openapi_json;
 pub use selection::{Include, Selection, SelectionError, VersionRef, With};
 pub use server::{Handle, Server, ServerConfig};
 pub use table::{Table, codebook_of};
-pub use weight::{HEAVY_BYTES, Weight};
+pub use weight::{Download, HEAVY_BYTES, SLOW_BITS_PER_S, Weight};
 pub use workbook::workbook;
 
 /// Re-exported for callers that read a data folder without a server.

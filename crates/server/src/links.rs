@@ -1,12 +1,10 @@
 //! Signed links to a study: whoever has one may try it, as a preview or as a pilot, until it ends. A link that is not signed does nothing.
 
 use hmac::{Hmac, KeyInit, Mac};
-use kelir_store::sha256_hex;
+use kelir_store::{private_file, sha256_hex};
 use kelir_study::schema::worded;
 use sha2::Sha256;
-use std::fs::OpenOptions;
 use std::io::{self, ErrorKind, Write};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -52,7 +50,7 @@ impl Links {
             Err(_) => {}
         }
         let key = crate::password::random_token();
-        let made = OpenOptions::new().write(true).create_new(true).mode(0o600).open(&path);
+        let made = private_file().create_new(true).open(&path);
         match made.and_then(|mut file| writeln!(file, "{key}").and_then(|()| file.sync_all())) {
             Ok(()) => Ok(Links { key }),
             // Another process was faster: its key is the folder's.

@@ -4,10 +4,8 @@ use crate::error::StartError;
 use argon2::Argon2;
 use argon2::password_hash::phc::PasswordHash;
 use argon2::password_hash::{PasswordHasher, PasswordVerifier};
-use kelir_store::Store;
-use std::fs::OpenOptions;
+use kelir_store::{Store, private_file};
 use std::io::{ErrorKind, Write};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
 /// Where the password that is in force comes from.
@@ -48,10 +46,8 @@ pub(crate) async fn set_up(store: &Store, chosen: Option<&str>) -> Result<Passwo
             Err(_) if stored.is_some() => return Ok(PasswordSource::Stored),
             Err(_) => {
                 let password = generate();
-                OpenOptions::new()
-                    .write(true)
+                private_file()
                     .create_new(true)
-                    .mode(0o600)
                     .open(&path)
                     .and_then(|mut file| writeln!(file, "{password}").and_then(|()| file.sync_all()))
                     .map_err(failed)?;

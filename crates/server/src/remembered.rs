@@ -1,7 +1,9 @@
 //! What earlier starts learnt of scenes: reading one rasterises its puppets, and what it is follows from its files alone.
 
+use kelir_store::private_file;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What a study needs to know of a scene.
@@ -52,7 +54,9 @@ impl Remembered {
         self.scenes.insert(scene.to_owned(), known);
         let (path, part) = (path(folder), folder.join(".scenes.json.part"));
         let text = serde_json::to_vec_pretty(self).unwrap_or_default();
-        if let Err(error) = std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &path)) {
+        let file = private_file().truncate(true).open(&part);
+        let written = file.and_then(|mut file| file.write_all(&text));
+        if let Err(error) = written.and_then(|()| std::fs::rename(&part, &path)) {
             tracing::debug!("{}: {error}", path.display());
         }
     }

@@ -3,6 +3,7 @@
 use crate::api::StudyVersion;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
 use crate::table::write_row;
+use crate::weight::{Download, downloads};
 use kelir_report::{
     Chain, DifferentStimulus, Fault, Participants, PooledVersion, ShownAt, Standing, Stimulus, StudyReport,
 };
@@ -56,6 +57,8 @@ pub struct StudyResults {
     pub stimuli: Vec<Stimulus>,
     /// In which size whom a stimulus is shown, in words.
     pub display: String,
+    /// What a participant downloads at each of the sizes; empty where some stimuli are not packed.
+    pub downloads: Vec<Download>,
     /// Other versions of the study that have sessions; their answers are not in these results.
     pub other_versions: Vec<PooledVersion>,
 }
@@ -106,6 +109,7 @@ pub(crate) async fn results_of(
         excluded,
         stimuli: stimuli.into_iter().map(stimulus).collect(),
         display: study.display_in_words(),
+        downloads: downloads(store, &study.id, selection.version()).await?,
         other_versions,
     })
 }

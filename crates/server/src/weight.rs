@@ -1,16 +1,45 @@
-//! How much a participant downloads of each block: of its stills all, of its films an estimate from some of their frames.
+//! How much a participant downloads: of each block before anything is made (its stills all, its films an estimate from some of their frames), and of
+//! a version as it is stored.
 
 use crate::library::{Library, beside};
 use crate::making::{Task, tasks};
 use crate::presenting::TAIL;
 use crate::render;
 use kelir_scene::Scene;
-use kelir_store::{packed_bytes, step_bytes};
+use kelir_store::{PackedSize, Store, StoreError, packed_bytes, step_bytes};
 use kelir_study::{Condition, Kind, StudyDefinition};
+use serde::Serialize;
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
-/// Above so many bytes a study is heavy: a participant on a slow line (1.6 Mbit/s) waits for half a minute in all.
-pub const HEAVY_BYTES: u64 = 6_000_000;
+/// A slow line, bits a second.
+pub const SLOW_BITS_PER_S: u64 = 1_600_000;
+/// Above so many bytes a study is heavy at a size: half a minute on a slow line. It is one bound for all sizes, as a larger screen has no faster line.
+pub const HEAVY_BYTES: u64 = SLOW_BITS_PER_S / 8 * 30;
+
+/// What a participant downloads of a version at one of its sizes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Download {
+    /// [width, height] in pixels.
+    pub size: [u32; 2],
+    /// Bytes of all that may be shown.
+    pub bytes: u64,
+    /// Whether that takes more than half a minute on a slow line (1.6 Mbit/s).
+    pub is_heavy: bool,
+}
+
+/// What a participant downloads of a version at each of its sizes, as its stimuli are stored; nothing where some are not packed.
+pub(crate) async fn downloads(
+    store: &Store,
+    study: &str,
+    version: &str,
+) -> Result<Vec<Download>, StoreError> {
+    let download = |PackedSize { size, stimuli, bytes }: PackedSize| {
+        let bytes = bytes + stimuli * TAIL as u64;
+        Download { size, bytes, is_heavy: bytes > HEAVY_BYTES }
+    };
+    Ok(store.packed_sizes(study, version).await?.into_iter().map(download).collect())
+}
 
 /// What a participant downloads of a block whose stimuli are shown at one size.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use crate::clock;
 use crate::error::StoreError;
 use crate::files::{hex, sha256_hex};
 use crate::first_chain::{self, GENESIS};
-use crate::plans::{PlannedTrial, decided, insert_trials, next_trial, trial};
+use crate::plans::{PlannedTrial, decided, insert_trials, next_trial, plan_of, trial};
 use crate::sessions::{Session, session};
 use crate::sqlite::Store;
 use crate::writer::Refused;
@@ -41,6 +41,8 @@ pub struct SentAnswer {
     pub payload: String,
     /// Number of trials that the page knows; absent: it asks for none.
     pub known: Option<u32>,
+    /// The plan that the page showed the trial of, as [`Store::plan`] told it; absent: the page knows no plans apart.
+    pub plan: Option<String>,
 }
 
 /// What came of an answer, and where its session stands then.
@@ -71,6 +73,8 @@ pub enum Appended {
     Different(Box<StoredAnswer>),
     /// The session has no trial of this index.
     NoSuchTrial,
+    /// The trial was shown of a plan that has been decided anew since.
+    OtherPlan,
 }
 
 /// What stands where another answer came.
@@ -155,7 +159,8 @@ impl Store {
         next: impl FnOnce(Progress) -> Result<NextTrials, E> + Send + 'static,
     ) -> Result<Appended, E> {
         let NewAnswer { trial_index, answer, payload, stimulus_size } = new.clone();
-        let sent = SentAnswer { session_id: session.session_id.clone(), trial_index, payload, known: None };
+        let session_id = session.session_id.clone();
+        let sent = SentAnswer { session_id, trial_index, payload, known: None, plan: None };
         let admit = |session: Option<Session>| {
             Ok(session.ok_or_else(|| StoreError::corrupt("session", "is not stored"))?)
         };
@@ -218,10 +223,16 @@ fn take<E>(
     check: impl FnOnce(&kelir_study::Trial) -> Result<Checked, E>,
     next: impl FnOnce(&Session, Progress) -> Result<NextTrials, E>,
 ) -> Result<Taken, Refused<E>> {
-    let SentAnswer { trial_index, payload, known, .. } = sent;
+    let SentAnswer { trial_index, payload, known, plan, .. } = sent;
+    let not_taken = |session: Session, appended| {
+        let more = session.more;
+        Ok(Taken { session, appended, next_trial: None, more, trials: vec![], answered: vec![] })
+    };
+    if plan.is_some() && plan != plan_of(writer, &session.session_id)? {
+        return not_taken(session, Appended::OtherPlan);
+    }
     let Some(planned) = trial(writer, &session.session_id, trial_index)? else {
-        let (appended, more) = (Appended::NoSuchTrial, session.more);
-        return Ok(Taken { session, appended, next_trial: None, more, trials: vec![], answered: vec![] });
+        return not_taken(session, Appended::NoSuchTrial);
     };
     let Checked { answer, stimulus_size } = check(&planned.trial).map_err(Refused::Caller)?;
     let new = NewAnswer { trial_index, answer, payload, stimulus_size };

@@ -50,7 +50,7 @@ impl Files {
         let folder = path.parent().unwrap_or(&self.root);
         private::folder(folder)?;
         let part = folder.join(format!(".{sha256}.{}.part", uuid::Uuid::new_v4().simple()));
-        let written = private::writing()
+        let written = private::private_file()
             .open(&part)
             .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
             .and_then(|()| fs::rename(&part, &path));

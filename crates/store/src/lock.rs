@@ -26,7 +26,7 @@ impl FolderLock {
         let path = folder.join(LOCK);
         let failed = |source| StoreError::File { path: path.clone(), source };
         private::folder(folder)?;
-        let mut file = private::writing().open(&path).map_err(failed)?;
+        let mut file = private::private_file().open(&path).map_err(failed)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {

@@ -16,7 +16,42 @@ pub struct Packing {
     pub size_bytes: u64,
 }
 
+/// What browsers get of all that a version shows at one size.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PackedSize {
+    /// [width, height] in pixels.
+    pub size: [u32; 2],
+    /// How many stimuli.
+    pub stimuli: u64,
+    /// Their packed bytes, each filled up to the longest of its item.
+    pub bytes: u64,
+}
+
 impl Store {
+    /// What browsers get of a version of a study at each of its sizes, by rising width; nothing where some of it has not been packed.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn packed_sizes(&self, study_id: &str, version: &str) -> Result<Vec<PackedSize>, StoreError> {
+        let (study_id, version) = (study_id.to_owned(), version.to_owned());
+        let sizes = "WITH items AS (
+                SELECT v.width, v.height, count(*) AS shown, count(p.size_bytes) AS packed, max(p.size_bytes) AS longest
+                FROM version_stimuli v LEFT JOIN packings p ON p.sha256 = v.sha256 AND p.packer = ?3
+                WHERE v.study_id = ?1 AND v.version = ?2 GROUP BY v.item_id, v.width, v.height
+            )
+            SELECT width, height, sum(shown), sum(shown * longest) FROM items
+            WHERE NOT EXISTS (SELECT 1 FROM items WHERE packed < shown) GROUP BY width, height ORDER BY width";
+        let row = |row: &Row<'_>| {
+            let whole = |at| row.get::<_, i64>(at).map(i64::unsigned_abs);
+            Ok(PackedSize { size: [row.get(0)?, row.get(1)?], stimuli: whole(2)?, bytes: whole(3)? })
+        };
+        let read = self.readers.read(move |reader| {
+            let mut query = reader.prepare_cached(sizes)?;
+            Ok(query.query_map(params![study_id, version, PACKER], row)?.collect::<Result<_, _>>()?)
+        });
+        read.await
+    }
+
     /// The packing of a stored stimulus, made where there is none yet or its file is gone; `None` for an unknown stimulus.
     ///
     /// # Errors

@@ -105,6 +105,15 @@ impl Store {
         self.readers.read(move |connection| trial(connection, &session_id, trial_index)).await
     }
 
+    /// Which plan a session has: when its first trial was decided, ISO-8601 UTC; `None` for an unknown session.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn plan(&self, session_id: &str) -> Result<Option<String>, StoreError> {
+        let session_id = session_id.to_owned();
+        self.readers.read(move |connection| plan_of(connection, &session_id)).await
+    }
+
     /// The first trial of a session that is decided and has no answer; `None` where there is none.
     ///
     /// # Errors
@@ -128,6 +137,13 @@ pub(crate) fn next_trial(connection: &Connection, session_id: &str) -> Result<Op
          ORDER BY trial_index LIMIT 1",
     )?;
     Ok(query.query_row((session_id, from), |row| row.get(0)).optional()?)
+}
+
+/// A plan that is decided anew is so after a time of silence, so that no two of a session begin at one moment.
+pub(crate) fn plan_of(connection: &Connection, session_id: &str) -> Result<Option<String>, StoreError> {
+    let mut query = connection
+        .prepare_cached("SELECT decided_at FROM session_trials WHERE session_id = ?1 AND trial_index = 0")?;
+    Ok(query.query_row([session_id], |row| row.get(0)).optional()?)
 }
 
 pub(crate) fn trial(

@@ -13,8 +13,8 @@ pub(crate) fn folder(path: &Path) -> Result<(), StoreError> {
     builder.create(path).map_err(|source| StoreError::File { path: path.to_owned(), source })
 }
 
-/// How files are written that only their owner can read.
-pub(crate) fn writing() -> OpenOptions {
+/// How every file of a data folder is written: only its owner can read it.
+pub fn private_file() -> OpenOptions {
     let mut options = OpenOptions::new();
     options.write(true).create(true);
     #[cfg(unix)]

@@ -94,7 +94,7 @@ impl Store {
 fn connect(path: &Path) -> Result<Connection, StoreError> {
     // SQLite gives the files beside it the rights of this one. A database that is there is never opened here: closing it again would drop every
     // lock that this process has on it (POSIX), and the next program that reads it would take the write-ahead log away.
-    drop(private::writing().create_new(true).open(path));
+    drop(private::private_file().create_new(true).open(path));
     let connection = Connection::open(path)?;
     connection.busy_timeout(BUSY)?;
     connection.pragma_update(None, "journal_mode", "wal")?;

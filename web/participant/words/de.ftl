@@ -113,6 +113,7 @@ someone-else-note = Wenn es jemand anderes war, beginnen Sie neu: Die bisherigen
 next-person = Zurück zum Anfang, für die nächste Person
 gone-title = Diese Sitzung ist beendet
 gone = Der Server kennt diese Sitzung nicht mehr. Bitte laden Sie die Seite neu, um von vorn zu beginnen, oder sagen Sie es der Person, die Ihnen den Link geschickt hat.
+answer-other = Sie waren lange weg, und inzwischen sind andere Bilder für Sie vorgesehen. Bitte wählen Sie erneut.
 
 # Netze und alte Browser
 line-foreign = Etwas zwischen diesem Browser und der Studie antwortet an ihrer Stelle, etwa die Anmeldeseite eines Netzes. Nichts geht verloren: Diese Seite macht von selbst weiter, sobald es weg ist.

@@ -113,6 +113,7 @@ someone-else-note = If that was someone else, begin anew: what they have answere
 next-person = Back to the start, for the next person
 gone-title = This session has ended
 gone = The server does not know this session any more. Please reload the page to begin anew, or tell the person who sent you the link.
+answer-other = You were away for long, and other pictures have been chosen for you meanwhile. Please choose again.
 
 # Networks and old browsers
 line-foreign = Something between this browser and the study answers in its place, such as the sign-in page of a network. Nothing is lost: this page goes on by itself when it is gone.

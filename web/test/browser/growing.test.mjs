@@ -15,7 +15,7 @@ test("a plan that grows by one trial an answer comes to its end, and its length 
   await v.hook("completion-code").waitFor();
   assert.deepEqual(stored(v.mock), [all]);
   const calls = v.mock.log.filter((call) => call.method !== "GET" || call.path.includes("/sessions/"));
-  assert.deepEqual(calls.filter((call) => call.method === "PUT").map((call) => call.query), ["?known=1", "?known=2", "?known=3", "?known=4", "?known=5"]);
+  assert.deepEqual(calls.filter((call) => call.method === "PUT").map((call) => call.query), ["1", "2", "3", "4", "5"].map((known) => `?known=${known}&plan=0`));
   assert.equal(calls.filter((call) => call.method === "GET").length, 0, "acknowledgements bring the trials: nothing else is asked");
   assert.equal(calls.filter((call) => call.path.endsWith("/completion")).length, 1, "completion is asked for once, at the end");
 });

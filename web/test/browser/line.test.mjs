@@ -69,6 +69,30 @@ test("a lost acknowledgement costs nothing and doubles nothing", async (t) => {
   assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"], [2, "left"], [3, "left"], [4, "left"]]]);
 });
 
+test("a page that was frozen while its plan went to somebody else shows the trials of the new one, and stores no answer to the old", async (t) => {
+  const v = await visit(t);
+  const pictures = () => v.page.locator(".pair.shown [data-sha256]").evaluateAll((buttons) => buttons.map((button) => button.dataset.sha256));
+  await begin(v);
+  const [left, right] = await pictures();
+  [...v.mock.sessions.values()][0].replans += 1;
+  const answered = v.page.waitForResponse((response) => response.request().method() === "PUT" && response.status() === 409);
+  await v.hook("choice-left").click();
+  await answered;
+  // The refusal may come before the next trial or during it.
+  const again = v.page.getByText("other pictures have been chosen for you meanwhile");
+  const next = position(v.page, 1).then(() => true, () => false);
+  if (await Promise.race([again.waitFor().then(() => false), next])) await v.hook("choice-left").click();
+  await again.waitFor();
+  assert.deepEqual(stored(v.mock), [[]]);
+  await position(v.page, 0);
+  assert.deepEqual(await pictures(), [right, left], "the mirror's");
+  await answer(v, 0, 5, "right");
+  await v.hook("completion-code").waitFor();
+  assert.deepEqual(stored(v.mock), [[[0, "right"], [1, "right"], [2, "right"], [3, "right"], [4, "right"]]]);
+  const sent = v.mock.log.filter(({ method }) => method === "PUT").map(({ query }) => new URLSearchParams(query).get("plan"));
+  assert.deepEqual(sent.filter((plan) => plan !== "0"), ["1", "1", "1", "1", "1"]);
+});
+
 test("a trial whose answer the server refuses is taken again; refused once more it is kept and said, and no code is shown", async (t) => {
   let refuse = true;
   const errors = [{ pointer: "/choice", value: "left", rule: "must be otherwise" }];

@@ -24,3 +24,16 @@ test("a notice covers no heading, two actions stand apart within a phone, and an
     v.problems.length = 0;
   }
 });
+
+test("the ribbon of a preview covers no action, in any language, on the narrowest phone", async (t) => {
+  const { stuff, server } = visits["a preview, with its ribbon"];
+  for (const lang of ["en", "de", "ar"]) {
+    const v = await visit(t, { options: { ...sizes.phone, viewport: { width: 320, height: 568 } }, stuff: stuff(), query: `?preview&lang=${lang}`, ...server });
+    for (const id of ["consent-agree", "start"]) {
+      await v.hook(id).waitFor();
+      const [action, ribbon] = [await v.hook(id).boundingBox(), await v.hook("ribbon").boundingBox()];
+      assert.ok(action.y + action.height <= ribbon.y, `${lang}: ${JSON.stringify([action, ribbon])}`);
+      await v.hook(id).click();
+    }
+  }
+});

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use kelir_server::links::{Links, Visit, now};
 use kelir_server::shipped::{Shipped, is_file};
-use kelir_server::{HEAVY_BYTES, Library, StudyFileError, Weight, library_of, results};
+use kelir_server::{HEAVY_BYTES, Library, SLOW_BITS_PER_S, StudyFileError, Weight, library_of, results};
 use kelir_study::Problem;
 use serde_json::json;
 
@@ -169,17 +169,27 @@ fn megabytes(bytes: u64, is_exact: bool) -> String {
     format!("{}{:.2} MB", if is_exact { "" } else { "about " }, bytes as f64 / 1e6)
 }
 
-/// Sizes at which people on a slow line wait.
+/// Sizes at which people on a slow line wait, and what can be done.
 fn heavy(file: &str, totals: &[Total]) -> Vec<Problem> {
+    let is_one_of_many = totals.len() > 1;
     let warning = |total: &Total| {
         let [width, height] = total.size;
         let (weight, bound) = (megabytes(total.bytes, total.is_exact), megabytes(HEAVY_BYTES, true));
+        let seconds = 8.0 * total.bytes as f64 / SLOW_BITS_PER_S as f64;
+        let (whose, otherwise) = match is_one_of_many {
+            true => (
+                "whose window has room for this size ",
+                ", or leave this size out where sharper pictures are not worth the wait",
+            ),
+            false => ("", ""),
+        };
         Problem {
             file: file.to_owned(),
-            field: "size".to_owned(),
+            field: if is_one_of_many { "display.sizes" } else { "size" }.to_owned(),
             value: Some(format!("[{width}, {height}]")),
             rule: format!(
-                "a participant downloads {weight} at this size; above {bound} a slow line (1.6 Mbit/s) takes more than half a minute"
+                "a participant {whose}downloads {weight}, which takes a slow line (1.6 Mbit/s) {seconds:.0} s; up to {bound} nothing is said. Pixels \
+                 are bytes: show fewer items, shorter films or fewer frames a second{otherwise}"
             ),
         }
     };
@@ -269,7 +279,14 @@ mod tests {
             ]
         );
         let [heavy] = &heavy("f.toml", &totals)[..] else { panic!("the larger size alone") };
-        assert_eq!(heavy.value.as_deref(), Some("[1110, 624]"));
-        assert!(heavy.rule.contains("about 6.00 MB") && heavy.rule.contains("above 6.00 MB"), "{heavy}");
+        assert_eq!((heavy.field.as_str(), heavy.value.as_deref()), ("display.sizes", Some("[1110, 624]")));
+        for said in
+            ["room for this size downloads about 6.00 MB", "30 s", "up to 6.00 MB", "leave this size out"]
+        {
+            assert!(heavy.rule.contains(said), "{said} in {heavy}");
+        }
+        let [heavy] = &super::heavy("f.toml", &totals[1..])[..] else { panic!("the one size") };
+        assert_eq!(heavy.field, "size");
+        assert!(!heavy.rule.contains("this size"), "{heavy}");
     }
 }

@@ -1,8 +1,10 @@
 //! A file that stays below a size.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+use kelir_store::private_file;
 
 /// Is appended to; once it is full it is put aside under the name `….1`, in place of the one that was put aside before.
 pub struct BoundedFile {
@@ -47,13 +49,9 @@ impl Write for BoundedFile {
     }
 }
 
-/// Opens a file that is its owner's alone at its end; says how long it is.
+/// Opens a file at its end; says how long it is.
 fn append(path: &Path) -> io::Result<(File, u64)> {
-    let mut options = OpenOptions::new();
-    options.append(true).create(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    let file = options.open(path)?;
+    let file = private_file().append(true).open(path)?;
     let bytes = file.metadata()?.len();
     Ok((file, bytes))
 }

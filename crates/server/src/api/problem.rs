@@ -44,6 +44,8 @@ worded! {
         NoConsent = "no_consent",
         /// The trial has another answer already; `stored` is what stands.
         AlreadyAnswered = "already_answered",
+        /// The trial was shown of a plan that has been decided anew since: it is to be shown again, of the plan that the session has now.
+        PlanChanged = "plan_changed",
         /// Somebody with this id has begun the study already; whoever that is goes on in the browser where it was.
         AlreadyBegun = "already_begun",
         /// Somebody with this id has finished the study already; the code is shown in the browser where it was.
@@ -82,6 +84,7 @@ impl ProblemCode {
             ProblemCode::CrossSite => StatusCode::FORBIDDEN,
             ProblemCode::NoConsent
             | ProblemCode::AlreadyAnswered
+            | ProblemCode::PlanChanged
             | ProblemCode::AlreadyBegun
             | ProblemCode::AlreadyFinished
             | ProblemCode::Incomplete => StatusCode::CONFLICT,

@@ -118,8 +118,12 @@ pub struct SessionState {
     pub named: bool,
     /// Whether consent has been given.
     pub consented: bool,
-    /// The trials that are decided so far, by index from 0. The list only grows.
+    /// The trials that are decided so far, by index from 0. The list of a plan only grows.
     pub trials: Vec<Trial>,
+    /// Which plan these are of: the session has another one where it was decided anew. Absent in a preview, whose plan stays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub plan: Option<String>,
     /// Whether more trials will be decided, from the answers to these.
     pub more: bool,
     /// Most trials there can be.
@@ -147,12 +151,15 @@ pub struct CreatedSession {
     pub token: String,
 }
 
-/// Which decided trials a page knows already.
-#[derive(Clone, Copy, Debug, Default, Deserialize, IntoParams)]
+/// What a page that answers knows already.
+#[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Known {
     /// Number of trials that the page knows: those from this index on are told. Absent: none are.
     pub known: Option<usize>,
+    /// The `plan` of the session that the trial was shown of. Where it has another one now, the answer is refused. Absent: it is taken to be of
+    /// the one that it has.
+    pub plan: Option<String>,
 }
 
 /// What a page that comes back holds.

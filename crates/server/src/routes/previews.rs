@@ -199,6 +199,7 @@ fn state_of(id: &str, preview: &Preview) -> Untold {
         status,
         named: false,
         consented: preview.consented,
+        plan: None,
         more: preview.more,
         most_trials: if preview.more { study.most_trials() } else { preview.trials.len() },
         next_trial: preview.missing().first().copied(),

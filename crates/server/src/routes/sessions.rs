@@ -232,7 +232,7 @@ pub(crate) async fn give_consent(
     Ok(Fresh(state_of(&app, &session).await?))
 }
 
-refusals!(NotStored: Unauthorized, NotFound, InvalidParameter, BadBody, BadJson, NotJson, TooLarge, InvalidField, NoConsent, AlreadyAnswered);
+refusals!(NotStored: Unauthorized, NotFound, InvalidParameter, BadBody, BadJson, NotJson, TooLarge, InvalidField, NoConsent, AlreadyAnswered, PlanChanged);
 
 /// Answer a trial. The same answer may be sent again; another one is refused, and the first one stands.
 ///
@@ -253,13 +253,15 @@ pub(crate) async fn put_answer(
     let no_trial = || Problem::not_found("trial");
     // Plain digits alone: "+1" and "01" are other addresses, not other names of a trial.
     let index = trial_index.parse().ok().filter(|i: &u32| i.to_string() == trial_index);
-    let known = known.known.map(|known| u32::try_from(known).unwrap_or(u32::MAX));
+    let Known { known, plan } = known;
+    let known = known.map(|known| u32::try_from(known).unwrap_or(u32::MAX));
     let Object { value, text } = body;
     let sent = SentAnswer {
         session_id: claim.session_id.clone(),
         trial_index: index.ok_or_else(no_trial)?,
         payload: text,
         known,
+        plan,
     };
     let (claim, value) = (Arc::new(claim), Arc::new(value));
     let taken = match take(&app, &claim, &sent, &value).await {
@@ -279,6 +281,11 @@ pub(crate) async fn put_answer(
             return Err(problem);
         }
         Appended::NoSuchTrial => return Err(no_trial()),
+        Appended::OtherPlan => {
+            let detail =
+                "The session has another plan by now: what was answered is not what its trial shows.";
+            return Err(Problem::new(ProblemCode::PlanChanged, detail));
+        }
     }
     let mut trials = Vec::new();
     if !taken.trials.is_empty() {
@@ -407,6 +414,8 @@ pub(crate) async fn complete_session(
 async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Problem>> {
     let study = app.begun(session).await?.study;
     let answered = app.store.answered(&session.session_id).await?;
+    // Read before its trials: where they are decided anew between the two, answers to the new ones are refused, and none is taken for another's.
+    let plan = app.store.plan(&session.session_id).await?;
     let planned = app.store.trials(&session.session_id).await?;
     let trials = trials_of(app, Whose::of(session), &study, &planned, &answered).await?;
     let status = match (&session.completed_at, &session.consented_at) {
@@ -424,6 +433,7 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
         status,
         named: session.subject_id != session.session_id,
         consented: session.consented_at.is_some(),
+        plan,
         more: session.more,
         most_trials: if session.more { study.most_trials() } else { trials.len() },
         next_trial: trials.iter().find(|trial| !trial.answered).map(|trial| trial.trial_index),

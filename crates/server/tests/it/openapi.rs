@@ -177,10 +177,13 @@ async fn garbage(client: &Client, operation: &Operation) -> Vec<Answer> {
     } else {
         sessions
     };
+    let mut queries = vec!["", "?limit=0&cursor=zz&with=nonsense&known=-1&limit=7&x"];
+    let parameters = operation.said["parameters"].as_array().into_iter().flatten();
+    queries.extend(parameters.filter(|parameter| parameter["name"] == "plan").map(|_| "?plan=x"));
     let mut answers = Vec::new();
     for (session, token) in &sessions {
         for address in addresses(&operation.path, session) {
-            for query in ["", "?limit=0&cursor=zz&with=nonsense&known=-1&limit=7&x"] {
+            for query in &queries {
                 for (bearer, cookie) in
                     [("", ""), ("x", "kelir_session=x"), (token.as_str(), researcher.as_str())]
                 {

@@ -30,6 +30,14 @@ async fn stills_are_weighed_to_the_byte_and_films_about() {
             }
         }
     }
+    // The version as it is stored weighs what was downloaded.
+    let cookie = client.sign_in().await;
+    let path = "/api/v1/studies/shadow-puppets/versions/current/results";
+    let results = client.research(&cookie, path).await.json();
+    let all =
+        |width: u64| downloaded.iter().filter(|((_, w), _)| *w == width).map(|(_, bytes)| bytes).sum::<u64>();
+    let of = |size: [u64; 2]| json!({ "size": size, "bytes": all(size[0]), "is_heavy": false });
+    assert_eq!(results["downloads"], json!([of([64, 36]), of([128, 72])]));
     let (library, path) = (Library::new(client.folder.path()), "studies/shadow-puppets.toml");
     let study = library.rehearsed(path).unwrap();
     let weights = library.weights(path, &study).unwrap();

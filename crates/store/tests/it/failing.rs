@@ -40,7 +40,13 @@ async fn a_job_that_fails_or_panics_takes_no_other_with_it() {
                 _ => panic!("on purpose"),
             };
             let session_id = session.session_id.clone();
-            let sent = SentAnswer { session_id, trial_index: n % 3, payload: format!("{n}"), known: None };
+            let sent = SentAnswer {
+                session_id,
+                trial_index: n % 3,
+                payload: format!("{n}"),
+                known: None,
+                plan: None,
+            };
             let (admit, next) = (|_| Ok(session), |_: &Session, _| Ok(NextTrials::default()));
             store.take_answer(sent, admit, check, next).await.is_ok()
         })
