@@ -52,7 +52,9 @@ export class AnimationClock {
   readonly #nearestMs: number;
   #first: number | null = null;
   #last = 0;
+  /** The last frame that was drawn, and the last whose time had come. */
   #count = -1;
+  #due = -1;
   #log = { refreshes: 0, shown: 0, skipped: 0, late: 0, missed: 0, longest: 0, draws: [] as Array<[number, number]> };
 
   constructor(options: { fps: number; frames: number; loop: boolean; periodMs: number }) {
@@ -63,20 +65,22 @@ export class AnimationClock {
     this.#nearestMs = Math.min(options.periodMs, 1000 / options.fps) / 2;
   }
 
-  /** The frame for the refresh at `now`, ms. */
-  tick(now: number): number {
+  /** The frame for the refresh at `now`, ms; the last one stays while the one whose time it is isn't here. −1 before there was any. */
+  tick(now: number, isHere: (frame: number) => boolean = () => true): number {
     if (this.#first === null) this.#first = this.#last = now;
     this.#interval(now - this.#last);
     this.#last = now;
     const elapsed = now - this.#first;
     const due = Math.floor(((elapsed + this.#nearestMs) * this.#fps) / 1000);
-    const count = Math.max(this.#count, this.#loop ? due : Math.min(due, this.#frames - 1));
-    if (count > this.#count) this.#draw(count, elapsed);
-    return count % this.#frames;
+    this.#due = Math.max(this.#due, this.#loop ? due : Math.min(due, this.#frames - 1));
+    if (this.#due > this.#count && isHere(this.#due % this.#frames)) this.#draw(this.#due, elapsed);
+    return this.#count % this.#frames;
   }
 
   log(): FrameLog {
-    const { refreshes, shown, skipped, late, missed, longest, draws } = this.#log;
+    const { refreshes, shown, late, missed, longest, draws } = this.#log;
+    // Those that are still waited for are missed too.
+    const skipped = this.#log.skipped + this.#due - this.#count;
     return {
       fps: this.#fps,
       refresh_hz: rounded(1000 / this.#periodMs),

@@ -1,13 +1,18 @@
-/** Stimuli, fetched in the order in which they are needed, checked against their hash and decoded before anybody sees them. */
+/**
+ * Stimuli, fetched in the order in which they are needed, checked against their hash and decoded before anybody sees them; but a film may begin while it
+ * comes, when all of it will be there in time, and no answer counts before its hash is known.
+ */
 import type { StimulusRef, Trial } from "./api.ts";
+import { Bell } from "./bell.ts";
 import { download } from "./download.ts";
+import { Rate } from "./forecast.ts";
 import type { Pixels } from "./layout.ts";
-import { animation, type Head, still } from "./packed.ts";
+import { Damaged, Film, type Head, still } from "./packed.ts";
 
 export { Unusable } from "./packed.ts";
 
 /** What is shown, with the hash of its bytes and its size in its own pixels. */
-export type Picture = { sha256: string; pixels: Pixels } & ({ kind: "still"; image: HTMLImageElement } | { kind: "animation"; manifest: Pick<Head, "fps" | "loop">; frames: ImageBitmap[] });
+export type Picture = { sha256: string; pixels: Pixels } & ({ kind: "still"; image: HTMLImageElement } | { kind: "animation"; head: Head; film: Film });
 
 /** A trial's pictures by role. */
 export type Pictures = Record<string, Picture>;
@@ -23,13 +28,21 @@ export interface Progress {
 /** Of a trial what the loader needs: at the size that is to be shown. */
 export type Sized = Pick<Trial, "trial_index" | "kind" | "shown">;
 
+/** When a trial's films begin, by role, ms after the trial. */
+export type Begins = Readonly<Record<string, number>>;
+
 export interface Loader {
   /** Gets the stimuli of these trials, the first ones first, while other things are on the screen; what else has not begun to come is left. */
   ahead(trials: readonly Sized[]): void;
   /** Gets a trial's stimuli while something else is on the screen; decodes them too, unless that could disturb an animation. */
   preload(trial: Sized, decode: boolean): void;
-  /** All its stimuli, ready to be painted. Rejects with `Unusable` when trying again would not help. */
-  load(trial: Sized): Promise<Pictures>;
+  /**
+   * Its stimuli, ready to be painted: all of them, or of films so much that the rest will come in time where each begins so many ms (none: 0) after
+   * the trial does. Rejects with `Unusable` when trying again would not help.
+   */
+  load(trial: Sized, begins: Begins): Promise<Pictures>;
+  /** Whether what was loaded is what it should be, once that is known; `false` as soon as something is not, and then it can be loaded anew. */
+  sound(trial: Pick<Sized, "trial_index">): Promise<boolean>;
   /** Frees what `load` made for a trial that is over, at whatever size. */
   release(trial: Pick<Sized, "trial_index">): void;
 }
@@ -45,14 +58,32 @@ interface Wanted {
   /** The first trial that shows it. */
   trial: number;
   state: "waiting" | "coming" | "here";
+  /** All of them, with the right hash. */
   bytes: Promise<Bytes>;
+  /** Those that have come. */
+  here: Bytes;
+  rate: Rate;
+  /** Whether wrong ones have come: then nothing is shown before all are known to be right. */
+  isSuspect: boolean;
+  films: Set<Film>;
   begin(): void;
+}
+
+/** What has been made for a trial. */
+interface Ready {
+  key: string;
+  refs: StimulusRef[];
+  /** Resolves when each has at least its first frame. */
+  pictures: Promise<Pictures>;
+  films: Map<string, { film: Film; rate: Rate }>;
 }
 
 /** `onWaiting` hears `true` when the line keeps us waiting, and `false` when it is back; `onProgress` hears of everything that comes. */
 export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (progress: Progress) => void = () => {}): Loader {
   const wanted = new Map<string, Wanted>();
-  const ready = new Map<number, { key: string; refs: StimulusRef[]; pictures: Promise<Pictures> }>();
+  const ready = new Map<number, Ready>();
+  /** Rings when more of anything is here. */
+  const bell = new Bell();
   /** Trials whose pictures are waited for: these are fetched whatever is held already. */
   const urgent = new Set<number>();
   const progress: Progress = { here: 0, of: 0, bytes: 0 };
@@ -73,6 +104,21 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
     }
   };
 
+  /** What is done with what comes. */
+  const arriving = (entry: Wanted) => ({
+    onBytes(more: number, here: Bytes) {
+      entry.here = here;
+      if (more > 0) entry.rate.add(more, performance.now());
+      for (const film of entry.films) film.hear(here);
+      onBytes(more);
+    },
+    onWrong() {
+      entry.isSuspect = true;
+      for (const film of entry.films) film.settle(new Damaged("other bytes came than the study's plan says"));
+      entry.films.clear();
+    },
+  });
+
   const want = (ref: StimulusRef, trial: number): Wanted => {
     const known = wanted.get(ref.sha256);
     if (known !== undefined) {
@@ -84,7 +130,7 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
       begin = () => {
         running += 1;
         entry.state = "coming";
-        download(ref, { onWaiting, onBytes })
+        download(ref, { onWaiting, ...arriving(entry) })
           .then((bytes) => {
             entry.state = "here";
             held += bytes.length;
@@ -105,7 +151,7 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
       };
     });
     bytes.catch(() => undefined); // `load` meets the same error again where it can be said
-    const entry: Wanted = { ref, trial, state: "waiting", bytes, begin };
+    const entry: Wanted = { ref, trial, state: "waiting", bytes, here: new Uint8Array(0), rate: new Rate(), isSuspect: false, films: new Set(), begin };
     wanted.set(ref.sha256, entry);
     progress.of += 1;
     onBytes(0);
@@ -126,28 +172,72 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
     for (const [sha256, { state }] of [...wanted]) if (state === "waiting" && !named.has(sha256)) forget(sha256);
   };
 
-  const picture = async (trial: Sized, ref: StimulusRef): Promise<Picture> => {
-    const bytes = await want(ref, trial.trial_index).bytes;
+  const picture = async (trial: Sized, role: string, ref: StimulusRef, films: Ready["films"]): Promise<Picture> => {
+    const entry = want(ref, trial.trial_index);
     const { sha256 } = ref;
     if (trial.kind === "still") {
-      const image = await still(bytes);
+      const image = await still(await entry.bytes);
       return { sha256, pixels: [image.naturalWidth, image.naturalHeight], kind: "still", image };
     }
-    const { head, frames } = await animation(bytes);
-    return { sha256, pixels: [head.width, head.height], kind: "animation", manifest: head, frames };
+    const film = new Film(bell);
+    films.set(role, { film, rate: entry.rate });
+    if (!entry.isSuspect) {
+      entry.films.add(film);
+      film.hear(entry.here);
+    }
+    entry.bytes.then((bytes) => (film.hear(bytes), null), (error: unknown) => error).then((wrong) => (film.settle(wrong), entry.films.delete(film)));
+    const head = await bell.found(() => (film.check(), film.pictures.length > 0 ? film.head : null));
+    return { sha256, pixels: [head.width, head.height], kind: "animation", head, film };
   };
 
-  const load = (trial: Sized): Promise<Pictures> => {
+  const make = (trial: Sized): Ready => {
     const key = JSON.stringify(Object.values(trial.shown).map(({ sha256 }) => sha256));
     const known = ready.get(trial.trial_index);
-    if (known?.key === key) return known.pictures;
+    if (known?.key === key) return known;
     if (known !== undefined) free(trial.trial_index);
-    const all = Object.entries(trial.shown).map(async ([role, ref]) => [role, await picture(trial, ref)] as const);
+    const films: Ready["films"] = new Map();
+    const all = Object.entries(trial.shown).map(async ([role, ref]) => [role, await picture(trial, role, ref, films)] as const);
     const pictures = Promise.all(all).then((made) => Object.fromEntries(made));
-    ready.set(trial.trial_index, { key, refs: Object.values(trial.shown), pictures });
-    pictures.catch(() => ready.get(trial.trial_index)?.key === key && ready.delete(trial.trial_index)); // the next `load` tries again
+    const made = { key, refs: Object.values(trial.shown), pictures, films };
+    ready.set(trial.trial_index, made);
+    pictures.catch(() => discard(trial, made)); // the next `load` tries again
     pump();
-    return pictures;
+    return made;
+  };
+
+  const discard = ({ trial_index }: Sized, made: Ready) => ready.get(trial_index) === made && free(trial_index);
+
+  /** Whether a trial's films can begin: they are here and decoded, or will be in time. What is here already is decoded first, so that this disturbs nothing. */
+  const canBegin = ({ films }: Ready, begins: Begins): boolean => {
+    const all = [...films];
+    const areHere = all.every(([, { film }]) => film.isSound);
+    return all.every(([role, { film, rate }]) => film.isDecoded || (!areHere && film.playsThrough(rate.at(performance.now()), begins[role] ?? 0)));
+  };
+
+  const check = ({ films }: Ready) => films.forEach(({ film }) => film.check());
+
+  const load = async (trial: Sized, begins: Begins): Promise<Pictures> => {
+    for (;;) {
+      const made = make(trial);
+      try {
+        const pictures = await made.pictures;
+        await bell.found(() => (check(made), canBegin(made, begins) || null));
+        return pictures;
+      } catch (error) {
+        if (!(error instanceof Damaged)) throw error;
+        discard(trial, made);
+      }
+    }
+  };
+
+  const sound = async (made: Ready | undefined): Promise<boolean> => {
+    if (made === undefined) return true;
+    try {
+      return await bell.found(() => (check(made), [...made.films.values()].every(({ film }) => film.isSound) || null));
+    } catch (error) {
+      if (error instanceof Damaged) return false;
+      throw error;
+    }
   };
 
   /** Frees what was decoded for a trial, and its bytes where many are held. */
@@ -168,10 +258,10 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
     const close = (pictures: Pictures) => {
       for (const picture of Object.values(pictures)) {
         if (picture.kind === "still") URL.revokeObjectURL(picture.image.src);
-        else for (const bitmap of picture.frames) bitmap.close();
       }
     };
     made?.pictures.then(close, () => undefined);
+    made?.films.forEach(({ film }) => film.close());
   };
 
   return {
@@ -181,14 +271,15 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
       pump();
     },
     preload(trial, decode) {
-      if (decode) return void load(trial);
+      if (decode) return void make(trial);
       fetching(trial);
       pump();
     },
-    load(trial) {
+    load(trial, begins) {
       urgent.add(trial.trial_index);
-      return load(trial);
+      return load(trial, begins);
     },
+    sound: ({ trial_index }) => sound(ready.get(trial_index)),
     release({ trial_index }) {
       urgent.delete(trial_index);
       free(trial_index);

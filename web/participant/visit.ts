@@ -121,6 +121,7 @@ export class Visit {
       trial,
       position: position(this.#session.state ?? { trials: [], more: false, most_trials: 0 }, trial),
       load: () => this.#load(trial, kind),
+      sound: (aloud) => this.#sound(trial, aloud),
       refreshPeriod: () => this.#measure(),
       onOnset: (decode) => {
         const next = this.#session.remaining[1];
@@ -207,24 +208,37 @@ export class Visit {
     for (const sized of await this.#sized([trial])) this.#loader.preload(sized, decode);
   }
 
-  /**
-   * A trial's pictures, at the size that fits the window when they are here; a page says how far they are when they are long in coming, for the screen
-   * is empty until then.
-   */
-  async #load(trial: Trial, kind: TrialModule): Promise<Pictures> {
+  /** A trial's pictures, at the size that fits the window when they are here. */
+  #load(trial: Trial, kind: TrialModule): Promise<Pictures> {
+    const now = () => atSize(trial, pickSize(kind, this.#study));
+    const load = async () => {
+      for (let sized = now(); ; ) {
+        const pictures = await this.#loader.load(sized, kind.begins?.(trial) ?? {});
+        const then = sized;
+        sized = now();
+        if (sized.shown === then.shown) return pictures;
+      }
+    };
+    return this.#watched(load());
+  }
+
+  /** Whether a trial's pictures are what they should be, once that is known; where they aren't, it is said why they come once more. */
+  async #sound(trial: Trial, aloud: boolean): Promise<boolean> {
+    const known = this.#loader.sound(trial);
+    const isSound = await (aloud ? this.#watched(known) : known);
+    if (!isSound) say("trial", words("pictures-again"));
+    return isSound;
+  }
+
+  /** What comes with the pictures; a page says how far they are when they are long in coming. */
+  async #watched<T>(work: Promise<T>): Promise<T> {
     const sentence = h("p", { role: "status" });
     const slow = setTimeout(() => {
       showPage(this.#jsPsych.getDisplayElement() ?? cleared(), words("deciding-title"), [sentence]);
       this.#tell({ sentence });
     }, PATIENCE_MS);
-    const now = () => atSize(trial, pickSize(kind, this.#study));
     try {
-      for (let sized = now(); ; ) {
-        const pictures = await this.#loader.load(sized);
-        const then = sized;
-        sized = now();
-        if (sized.shown === then.shown) return pictures;
-      }
+      return await work;
     } finally {
       clearTimeout(slow);
       this.#tell({ sentence: null });

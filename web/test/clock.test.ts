@@ -129,6 +129,26 @@ test("frames that were never shown, or more than a refresh too late, are missed"
   assert.equal(faster.log().missed_frames, 10, "a display can't show more frames than it has refreshes");
 });
 
+test("a frame that isn't here when its time comes leaves the last one on the screen; what was not seen is missed, and time goes on", () => {
+  const clock = film({ fps: 60, frames: 10 });
+  // Frames 3 to 5 come when it is the time of the seventh refresh.
+  const seen = refreshes(60, 9).map((now, i) => clock.tick(now, (frame) => frame < 3 || i >= 6));
+  assert.deepEqual(seen, [0, 1, 2, 2, 2, 2, 6, 7, 8]);
+  assert.deepEqual([clock.log().shown, clock.log().skipped, clock.log().missed_frames], [6, 3, 3]);
+
+  const waiting = film({ fps: 60, frames: 10 });
+  for (const now of refreshes(60, 6)) waiting.tick(now, (frame) => frame < 3);
+  assert.deepEqual([waiting.log().shown, waiting.log().missed_frames], [3, 3], "those that are still waited for are missed already");
+
+  const late = film({ fps: 12, frames: 10 }); // frame 1 is due at the fifth refresh, and comes before the eighth
+  const at = refreshes(60, 9).map((now, i) => late.tick(now, (frame) => frame < 1 || i >= 7));
+  assert.deepEqual(at, [0, 0, 0, 0, 0, 0, 0, 1, 1]);
+  assert.deepEqual([late.log().skipped, late.log().missed_frames], [0, 1]);
+
+  const none = film();
+  assert.deepEqual(refreshes(60, 3).map((now) => none.tick(now, () => false)), [-1, -1, -1], "no frame is here yet");
+});
+
 test("the position is a function of time: any way to a moment shows the same frame there", () => {
   const random = noise(3);
   for (let i = 0; i < 50; i++) {

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { createServer, type IncomingMessage, type ServerResponse } from "node:http";
 import type { AddressInfo } from "node:net";
 import { test } from "node:test";
+import { gzipSync } from "node:zlib";
 import { download } from "../participant/download.ts";
 import { Unusable } from "../participant/packed.ts";
 import { sha256 } from "./samples.ts";
@@ -27,9 +28,17 @@ async function line(...answers: Array<(response: ServerResponse, from: number, r
   const url = `http://127.0.0.1:${(server.address() as AddressInfo).port}/stimulus`;
   const said: boolean[] = [];
   let bytes = 0;
-  const watcher = { onWaiting: (waiting: boolean) => void said.push(waiting), onBytes: (more: number) => void (bytes += more) };
+  let wrong = 0;
+  const watcher = {
+    onWaiting: (waiting: boolean) => void said.push(waiting),
+    onBytes(more: number, here: Uint8Array) {
+      bytes += more;
+      assert.equal(here.length, bytes, "what is counted is here");
+    },
+    onWrong: () => void (wrong += 1),
+  };
   const get = (hash = sha256(data)) => download({ sha256: hash, url }, watcher, STALL_MS).finally(() => (server.closeAllConnections(), server.close()));
-  return { get, ranges, said, counted: () => bytes };
+  return { get, ranges, said, counted: () => bytes, wrong: () => wrong };
 }
 
 const head = (response: ServerResponse, from: number) =>
@@ -62,15 +71,31 @@ test("a request that is never answered is asked again", async () => {
 });
 
 test("a server without ranges sends all of it again, and nothing is counted twice", async () => {
-  const { get, counted } = await line(stalled, (response) => whole(response, 0));
+  const { get, counted, wrong } = await line(stalled, (response) => whole(response, 0));
   assert.deepEqual(Buffer.from(await get()), data);
-  assert.equal(counted(), data.length);
+  assert.deepEqual([counted(), wrong()], [data.length, 0]);
+});
+
+test("bytes that come again and are others are told of, before all have come", async () => {
+  const other = Buffer.from(data).fill(1, 40_000, 40_001);
+  const { get, wrong } = await line((response) => void head(response, 0).write(other.subarray(0, 50_000)), (response) => whole(response, 0));
+  assert.deepEqual(Buffer.from(await get()), data);
+  assert.equal(wrong(), 1);
+});
+
+test("a length that is not announced, or is that of what a proxy has compressed, is no hindrance", async () => {
+  const silent = await line((response) => void response.writeHead(200).write(data.subarray(0, 1000), () => response.end(data.subarray(1000))));
+  assert.deepEqual(Buffer.from(await silent.get()), data);
+  const small = gzipSync(data);
+  const squeezed = await line((response) => void response.writeHead(200, { "content-encoding": "gzip", "content-length": small.length }).end(small));
+  assert.deepEqual(Buffer.from(await squeezed.get()), data);
 });
 
 test("wrong bytes are asked for again, and never taken", async () => {
   const wrong = (response: ServerResponse) => void response.end(Buffer.alloc(10));
   const once = await line(wrong, whole);
   assert.deepEqual(Buffer.from(await once.get()), data);
+  assert.equal(once.wrong(), 1);
   const always = await line(wrong);
   await assert.rejects(always.get(), Unusable);
   assert.equal(always.ranges.length, 3);

@@ -2,7 +2,7 @@
 // without the server (`node --import ./test/typescript.mjs test/mock-server.ts DIST PORT`). Its answers have the server's types; its numbers are made up.
 import { randomUUID } from "node:crypto";
 import { readFile } from "node:fs/promises";
-import { createServer, type IncomingMessage } from "node:http";
+import { createServer, type IncomingMessage, type ServerResponse } from "node:http";
 import type { AddressInfo } from "node:net";
 import { extname, join } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -51,6 +51,10 @@ export interface Options {
   stuff?: Material;
   /** An adaptive plan: so many trials are decided at the start, one more with each answer, and `most` is promised. */
   grow?: { start: number; most: number } | null;
+  /** Gives out a stimulus's bytes in the server's place, from one byte on. */
+  serve?: ((stimulus: { sha256: string; data: Buffer; from: number }, response: ServerResponse) => void) | null;
+  /** Whether it gives out parts of a stimulus. */
+  ranges?: boolean;
   /** A script that runs before the page's own. */
   spoil?: string;
   /** When an answer counts. */
@@ -70,7 +74,7 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, shownAs = study.display, perVisit = false, spoil = "", texts = {}, visitKind = "participant" }: Options) {
+export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, shownAs = study.display, perVisit = false, serve = null, ranges = true, spoil = "", texts = {}, visitKind = "participant" }: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
@@ -194,7 +198,13 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     if (path.startsWith("/stimuli/")) {
       const stimulus = stuff.bytes.get(path.slice(9));
       if (stimulus === undefined) return json(problem(404, "not_found", "No such stimulus."));
-      return send(200, "application/vnd.kelir.stimulus", stimulus.data, { "cache-control": "public, max-age=31536000, immutable" });
+      const headers = { "cache-control": "public, max-age=31536000, immutable", etag: `"${path.slice(9)}"` };
+      if (serve === null) return send(200, "application/vnd.kelir.stimulus", stimulus.data, headers);
+      const { length } = stimulus.data;
+      const from = Number((ranges ? req.headers.range : undefined)?.match(/^bytes=(\d+)-$/)?.[1] ?? 0);
+      const part: Record<string, string> = from > 0 ? { "content-range": `bytes ${from}-${length - 1}/${length}` } : {};
+      res.writeHead(from > 0 ? 206 : 200, { ...HEADERS, ...headers, ...part, "content-type": "application/vnd.kelir.stimulus", "content-length": length - from });
+      return serve({ sha256: path.slice(9), data: stimulus.data, from }, res);
     }
     const page = path.startsWith("/study/") ? "participant.html" : path.startsWith("/console") ? "console.html" : null;
     try {

@@ -103,6 +103,14 @@ export class Maker implements Material {
     return this.animation(Array.from({ length: frames }, (_, i) => rows({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) }, size)), fps, true, size);
   }
 
+  /** Flat greys, the code rising by 4 from frame to frame, in pictures of these lengths. */
+  greys(first: number, lengths: readonly number[], fps: number) {
+    const [width, height] = SMALL;
+    const flat = (lines: number, code: number) => Buffer.alloc(3 * width * lines, code);
+    const picture = (i: number) => (i === 0 ? png(width, height, flat(height, first), lengths[0]) : png(width, 2 * height, Buffer.concat([flat(height, 4), flat(height, 0)]), lengths[i]));
+    return this.#add([...lengths.keys()].map(picture), fps, true, SMALL);
+  }
+
   trial(trial: Omit<Planned, "trial_index" | "width" | "height" | "larger"> & Partial<Pick<Planned, "larger">>): void {
     const [width, height] = SMALL;
     this.trials.push({ trial_index: this.trials.length, larger: [], ...trial, width, height });

@@ -2,16 +2,17 @@
 import { createHash } from "node:crypto";
 import { crc32, deflateSync } from "node:zlib";
 
-/** An 8-bit RGB PNG of `rgb` (row by row). */
-export function png(width: number, height: number, rgb: Uint8Array): Buffer {
-  const chunk = (type: string, data: Buffer) => {
-    const body = Buffer.concat([Buffer.from(type, "latin1"), data]);
-    const out = Buffer.alloc(body.length + 8);
-    out.writeUInt32BE(data.length, 0);
-    body.copy(out, 4);
-    out.writeUInt32BE(crc32(body), body.length + 4);
-    return out;
-  };
+function chunk(type: string, data: Buffer): Buffer {
+  const body = Buffer.concat([Buffer.from(type, "latin1"), data]);
+  const out = Buffer.alloc(body.length + 8);
+  out.writeUInt32BE(data.length, 0);
+  body.copy(out, 4);
+  out.writeUInt32BE(crc32(body), body.length + 4);
+  return out;
+}
+
+/** An 8-bit RGB PNG of `rgb` (row by row), of `length` bytes if that is more than it takes: a chunk that means nothing fills it up. */
+export function png(width: number, height: number, rgb: Uint8Array, length = 0): Buffer {
   const header = Buffer.alloc(13);
   header.writeUInt32BE(width, 0);
   header.writeUInt32BE(height, 4);
@@ -19,7 +20,10 @@ export function png(width: number, height: number, rgb: Uint8Array): Buffer {
   const raw = Buffer.alloc((width * 3 + 1) * height);
   for (let y = 0; y < height; y++) raw.set(rgb.subarray(y * width * 3, (y + 1) * width * 3), y * (width * 3 + 1) + 1);
   const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
-  return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(raw, { level: 1 })), chunk("IEND", Buffer.alloc(0))]);
+  const parts = [signature, chunk("IHDR", header), chunk("IDAT", deflateSync(raw, { level: 1 })), chunk("IEND", Buffer.alloc(0))];
+  const missing = length - parts.reduce((sum, part) => sum + part.length, 0) - 12;
+  if (missing >= 0) parts.splice(2, 0, chunk("fiLl", Buffer.alloc(missing)));
+  return Buffer.concat(parts);
 }
 
 export interface Look {
@@ -61,3 +65,9 @@ export function shadowRows({ width = 592, height = 333, turn = 0, soft = 6, nois
 }
 
 export const sha256 = (bytes: Uint8Array): string => createHash("sha256").update(bytes).digest("hex");
+
+/** Lengths of an animation's pictures, bytes, as they are of the built-in study's. */
+export const PICTURES = [
+  155390, 16856, 23252, 26570, 28794, 30392, 31724, 32750, 33440, 34306, 34934, 35528, 36124, 36606, 36992, 37088, 37464, 37318, 37180, 36718, 36380, 35946, 35190, 34352, 33488, 32256, 30814, 29098, 26982, 23972,
+  18564, 18550, 23752, 26598, 28556, 29978, 31186, 32122, 32870, 33606, 34600, 35318, 35896, 36600, 36820, 37130, 37054, 37182, 37106, 36906, 36564, 36146, 35466, 34666, 33700, 32360, 31008, 29226, 26788, 23362,
+];

@@ -3,7 +3,7 @@ import { type JsPsych, type JsPsychPlugin, ParameterType, type PluginInfo } from
 import type { Study, Trial } from "../api.ts";
 import type { Rules } from "../inputs/guard.ts";
 import type { Offered, Room, Size } from "../layout.ts";
-import type { Pictures } from "../stimuli.ts";
+import type { Begins, Pictures } from "../stimuli.ts";
 import type { Plain } from "../words/index.ts";
 
 export interface TrialModule {
@@ -17,6 +17,8 @@ export interface TrialModule {
   readonly legend: Legend | ((study: Study) => Legend);
   /** The plugin's parameters for one trial. */
   parameters(given: Given): Record<string, unknown>;
+  /** When its animations begin, by role, ms after the trial does; at once where it says nothing. */
+  begins?(trial: Trial): Begins;
   /** Why a display that redraws every `periodMs` (null: not known) can't show the trial as it is asked for; null where it can. */
   refusal?(trial: Trial, periodMs: number | null): string | null;
 }
@@ -39,8 +41,10 @@ export interface Given {
   trial: Trial;
   /** Where the trial stands, as "7 of 25". */
   position: string;
-  /** The stimuli by role, at the size that fits now: fetched, verified and decoded. */
+  /** The stimuli by role, at the size that fits now: ready to be shown from `begins` on. */
   load(): Promise<Pictures>;
+  /** Whether what was loaded has turned out to be what the plan says; where it has not, the trial ends without an answer and is shown again. A page says what is waited for where that is asked for. */
+  sound(aloud: boolean): Promise<boolean>;
   /** The display's refresh period in ms; null where it could not be measured. */
   refreshPeriod(): Promise<number | null>;
   /** The pictures have been on the screen: the next trial's may be fetched, and decoded too unless that would disturb these. */
@@ -60,13 +64,15 @@ export const commonParameters = <const>{
   height: { type: ParameterType.INT, default: undefined },
   /** What is done with more room than their size fills: "native", "integer" or "fill". */
   fit: { type: ParameterType.STRING, default: "native" },
-  /** Gives a promise of the fetched, verified and decoded pictures by role. */
+  /** Gives a promise of the pictures by role, ready to be shown. */
   load: { type: ParameterType.FUNCTION, default: undefined },
+  /** Gives a promise of whether the bytes of what was loaded are the right ones, which says what it waits for where its argument is true. */
+  sound: { type: ParameterType.FUNCTION, default: async () => true },
   /** Gives a promise of the display's refresh period in ms, or of null where it could not be measured. */
   refresh_period: { type: ParameterType.FUNCTION, default: undefined },
   /** Called once the pictures have been on the screen, with whether the next ones may be decoded now: the time to preload them. */
   on_onset: { type: ParameterType.FUNCTION, default: () => {} },
-  /** Called with the trial's data at the choice, before its outline is shown: from then on it must not be lost. */
+  /** Called with the trial's data at the choice, or when its pictures are known to be right: from then on it must not be lost. */
   on_choice: { type: ParameterType.FUNCTION, default: () => {} },
   /** When an answer counts: `min_visible_ms`, `min_gap_ms`. */
   rules: { type: ParameterType.OBJECT, default: { min_visible_ms: 0, min_gap_ms: 0 } },
@@ -118,7 +124,7 @@ export const SIMULATED = { simulated: true, rules: { min_visible_ms: 0, min_gap_
 export const rulesOf = ({ response }: Pick<Study, "response">): Rules => ({ min_visible_ms: response?.min_visible_ms ?? 0, min_gap_ms: response?.min_gap_ms ?? 0 });
 
 /** Values of the common parameters. */
-export const common = ({ study, trial, position, load, refreshPeriod, onOnset, onChoice }: Given) => ({
+export const common = ({ study, trial, position, load, sound, refreshPeriod, onOnset, onChoice }: Given) => ({
   ...{ question: study.question, position, width: trial.width, height: trial.height, fit: study.display.fit },
-  ...{ load, refresh_period: refreshPeriod, on_onset: onOnset, on_choice: onChoice, rules: rulesOf(study) },
+  ...{ load, sound, refresh_period: refreshPeriod, on_onset: onOnset, on_choice: onChoice, rules: rulesOf(study) },
 });

@@ -118,6 +118,7 @@ answer-other = Sie waren lange weg, und inzwischen sind andere Bilder für Sie v
 # Netze und alte Browser
 line-foreign = Etwas zwischen diesem Browser und der Studie antwortet an ihrer Stelle, etwa die Anmeldeseite eines Netzes. Nichts geht verloren: Diese Seite macht von selbst weiter, sobald es weg ist.
 answer-again = Eine Antwort konnte nicht gespeichert werden, deshalb sind ihre Bilder noch einmal da. Bitte wählen Sie erneut.
+pictures-again = Ein Bild kam beschädigt an, deshalb sind diese Bilder noch einmal da. Bitte wählen Sie erneut.
 too-old = Dieser Browser ist zu alt für diese Studie. Bitte öffnen Sie den Link in einem neueren: { $browsers } oder später.
 not-loaded = Diese Seite konnte nicht vollständig geladen werden. Bitte prüfen Sie die Verbindung und laden Sie sie neu.
 no-script = Diese Studie braucht JavaScript. Bitte schalten Sie es für diese Seite ein, oder öffnen Sie den Link in einem anderen Browser.

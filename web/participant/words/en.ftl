@@ -118,6 +118,7 @@ answer-other = You were away for long, and other pictures have been chosen for y
 # Networks and old browsers
 line-foreign = Something between this browser and the study answers in its place, such as the sign-in page of a network. Nothing is lost: this page goes on by itself when it is gone.
 answer-again = An answer could not be stored, so its pictures are here once more. Please choose again.
+pictures-again = A picture came damaged, so these pictures are here once more. Please choose again.
 too-old = This browser is too old for this study. Please open the link in a newer one: { $browsers }, or later.
 not-loaded = This page could not be loaded in full. Please check the connection and reload it.
 no-script = This study needs JavaScript. Please switch it on for this page, or open the link in another browser.

@@ -17,7 +17,10 @@ export async function launchFirefox({ preferences = {}, width = 1280, height = 8
   const profile = mkdtempSync(join(tmpdir(), "kelir-firefox-"));
   const lines = Object.entries({ ...PREFERENCES, ...preferences }).map(([name, value]) => `user_pref(${JSON.stringify(name)}, ${JSON.stringify(value)});`);
   writeFileSync(join(profile, "user.js"), lines.join("\n"));
-  const process_ = spawn(executable, ["--headless", "--marionette", "--no-remote", "--profile", profile, `--width=${width}`, `--height=${height}`], { stdio: "ignore" });
+  const process_ = spawn(executable, ["--headless", "--marionette", "--no-remote", "--profile", profile, `--width=${width}`, `--height=${height}`], {
+    stdio: "ignore",
+    env: { ...process.env, MOZ_HEADLESS_WIDTH: String(Math.max(1366, width)), MOZ_HEADLESS_HEIGHT: String(Math.max(768, height)) }, // the screen's
+  });
   const ended = new Promise((resolve) => process_.once("exit", resolve));
   const close = async () => {
     process_.kill();

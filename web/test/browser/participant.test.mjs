@@ -37,6 +37,7 @@ test("the keyboard alone is enough, and arrows mean sides", async (t) => {
   await v.hook("start").waitFor();
   await v.page.keyboard.press("Tab");
   assert.equal(await v.page.evaluate(() => document.activeElement?.getAttribute("data-testid")), "start", "one tab stop from heading to action");
+  await v.page.waitForTimeout(200); // the same key sooner is a repeat
   await v.page.keyboard.press("Enter");
   for (const [i, key] of ["ArrowRight", "ArrowLeft"].entries()) {
     await position(v.page, i);

@@ -78,7 +78,8 @@ for (const guarded of [false, true]) {
   test(`frames are stepped through to the pixel in Firefox${guarded ? " that guards against fingerprints" : ""}`, { skip: !hasFirefox }, async (t) => {
     const { stuff, frames } = wandering();
     const mock = await startMock({ dist: bundle, stuff });
-    const firefox = await launchFirefox({ preferences: guarded ? { "privacy.resistFingerprinting": true } : {} });
+    // It tells every page that a CSS pixel is two of the display's: only on such a display can a page show pixel for pixel.
+    const firefox = await launchFirefox(guarded ? { preferences: { "privacy.resistFingerprinting": true, "layout.css.devPixelsPerPx": "2" }, width: 2560, height: 1600 } : {});
     t.after(() => Promise.all([firefox.close(), mock.close()]));
     await firefox.goto(`${mock.url}/study/${study.id}`);
     await firefox.click("consent-agree");
@@ -94,7 +95,7 @@ for (const guarded of [false, true]) {
 async function onScreen(firefox, frame) {
   const { x, y } = await firefox.evaluate(() => {
     const box = document.querySelector("canvas").getBoundingClientRect();
-    return { x: Math.round(box.x), y: Math.round(box.y) };
+    return { x: Math.round(box.x * devicePixelRatio), y: Math.round(box.y * devicePixelRatio) };
   });
   let wrong = -1;
   for (let tries = 0; tries < 60 && wrong !== 0; tries++) {

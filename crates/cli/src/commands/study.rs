@@ -145,8 +145,8 @@ fn versions(study: &str, data: &Path, format: Format) -> Result<()> {
 }
 
 fn weight_json(weight: &Weight) -> serde_json::Value {
-    let Weight { block, size, bytes, is_exact } = weight;
-    json!({ "block": block, "size": size, "bytes": bytes, "is_exact": is_exact })
+    let Weight { block, size, bytes, is_exact, begins_after_bytes } = weight;
+    json!({ "block": block, "size": size, "bytes": bytes, "is_exact": is_exact, "begins_after_bytes": begins_after_bytes })
 }
 
 /// What a participant downloads in all at one size, and whether that was counted.
@@ -201,10 +201,14 @@ fn weights_text(weights: &[Weight], totals: &[Total]) -> String {
     let line = |total: &Total| {
         let [width, height] = total.size;
         let own = weights.iter().filter(|weight| weight.size == total.size);
-        let blocks: Vec<String> =
-            own.map(|w| format!("{} {}", w.block, megabytes(w.bytes, w.is_exact))).collect();
+        let begins = |w: &Weight| {
+            let megabytes = w.begins_after_bytes.map(|bytes| megabytes(bytes, w.is_exact));
+            megabytes.map_or_else(String::new, |mb| format!(", beginning after {mb} at 9 Mbit/s"))
+        };
+        let of_block = |w: &Weight| format!("{} {}{}", w.block, megabytes(w.bytes, w.is_exact), begins(w));
+        let blocks: Vec<String> = own.map(of_block).collect();
         let all = megabytes(total.bytes, total.is_exact);
-        format!("  a participant downloads at {width} × {height}: {all} ({})", blocks.join(", "))
+        format!("  a participant downloads at {width} × {height}: {all} ({})", blocks.join("; "))
     };
     totals.iter().map(line).collect::<Vec<_>>().join("\n")
 }
@@ -260,8 +264,10 @@ mod tests {
 
     #[test]
     fn what_is_heavy_is_said_at_the_size_at_which_it_is() {
-        let weight =
-            |block: &str, size, bytes, is_exact| Weight { block: block.to_owned(), size, bytes, is_exact };
+        let weight = |block: &str, size, bytes, is_exact| {
+            let begins_after_bytes = (block == "loop").then_some(bytes - 1_500_000);
+            Weight { block: block.to_owned(), size, bytes, is_exact, begins_after_bytes }
+        };
         let (small, large) = ([592, 333], [1110, 624]);
         let weights = [
             weight("stills", small, 2_000_000, true),
@@ -274,8 +280,8 @@ mod tests {
         assert_eq!(
             text.lines().collect::<Vec<_>>(),
             [
-                "  a participant downloads at 592 × 333: 6.00 MB (stills 2.00 MB, loop 4.00 MB)",
-                "  a participant downloads at 1110 × 624: about 6.00 MB (stills 2.50 MB, loop about 3.50 MB)"
+                "  a participant downloads at 592 × 333: 6.00 MB (stills 2.00 MB; loop 4.00 MB, beginning after 2.50 MB at 9 Mbit/s)",
+                "  a participant downloads at 1110 × 624: about 6.00 MB (stills 2.50 MB; loop about 3.50 MB, beginning after about 2.00 MB at 9 Mbit/s)"
             ]
         );
         let [heavy] = &heavy("f.toml", &totals)[..] else { panic!("the larger size alone") };

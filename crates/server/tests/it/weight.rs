@@ -47,6 +47,10 @@ async fn stills_are_weighed_to_the_byte_and_films_about() {
         [("stills", 64, true), ("stills", 128, false), ("loop", 64, false), ("loop", 128, false)]
     );
     assert_eq!(weights[0].bytes, downloaded[&(0, 64)]);
+    assert_eq!(
+        weights.iter().map(|w| w.begins_after_bytes.is_some()).collect::<Vec<_>>(),
+        [false, false, true, true]
+    );
     for (weight, block) in weights.iter().zip([0, 0, 1, 1]) {
         let right = downloaded[&(block, u64::from(weight.size[0]))] as f64;
         let part = weight.bytes as f64 / right;

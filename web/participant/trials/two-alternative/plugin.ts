@@ -4,6 +4,7 @@ import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Pictures } from "../../stimuli.ts";
 import { commonData, commonParameters, SIMULATED } from "../module.ts";
+import { answered } from "../shared/answer.ts";
 import { FALLBACK_PERIOD_MS } from "../shared/player.ts";
 import { type Pair, Stage } from "./stage.ts";
 
@@ -35,23 +36,18 @@ export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
     const pair = pictures as Pair;
     const stage = new Stage(display, trial, pair);
     onLoad?.();
-    const play = await stage.show(periodMs ?? FALLBACK_PERIOD_MS);
+    const log = await stage.show(periodMs ?? FALLBACK_PERIOD_MS);
     trial.on_onset?.(pair.left.kind === "still" && pair.right.kind === "still");
 
-    const choice = await stage.taking.choice();
-    const told = stage.taking.told(choice, periodMs);
-    const data = {
-      choice: choice.role,
-      ...told,
-      min_visible_ms: rounded(Math.max(0, told.rt - told.hidden_ms)),
-      ...play.log(),
-    } satisfies Schemas["TwoAlternativeAnswer"];
-    trial.on_choice?.(data);
-    stage.mark(choice.role);
-    await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));
-    play.stop();
-    stage.clear();
-    return data;
+    return answered(this.#jsPsych, trial, stage, (choice) => {
+      const told = stage.taking.told(choice, periodMs);
+      return {
+        choice: choice.role,
+        ...told,
+        min_visible_ms: rounded(Math.max(0, told.rt - told.hidden_ms)),
+        ...log(),
+      } satisfies Schemas["TwoAlternativeAnswer"];
+    });
   }
 
   /** `data-only` answers at random at once; `visual` shows the pair and clicks. */

@@ -69,8 +69,8 @@ export class Stage {
     );
   }
 
-  /** Paints the pair and resolves at the frame after: the first at which it has been on the screen. */
-  async show(periodMs: number): Promise<{ log(): ReturnType<typeof played<Side>>; stop(): void }> {
+  /** Paints the pair and resolves at the frame after, the first at which it has been on the screen, with what tells how animations were played until then. */
+  async show(periodMs: number): Promise<() => ReturnType<typeof played<Side>>> {
     const players = SIDES.flatMap((side) => {
       const [picture, context] = [this.#pair[side], this.#paint[side]];
       return picture.kind === "still" || context === null ? [] : [[side, new Player(picture, context, periodMs)] as const];
@@ -81,7 +81,6 @@ export class Stage {
       return picture.kind === "still" ? [picture.image.decode()] : [];
     });
     await Promise.all(decoded); // a decoded picture may have been dropped since; this is at once otherwise
-    let running = true;
     await new Promise<void>((resolve) => {
       requestAnimationFrame((now) => {
         draw(now);
@@ -93,7 +92,7 @@ export class Stage {
           resolve();
           if (players.length === 0) return;
           const loop = (at: number) => {
-            if (!running) return;
+            if (this.#listening.signal.aborted) return;
             draw(at);
             requestAnimationFrame(loop);
           };
@@ -101,7 +100,7 @@ export class Stage {
         });
       });
     });
-    return { log: () => played(players), stop: () => (running = false) };
+    return () => played(players);
   }
 
   /** Outlines the choice. */

@@ -2,7 +2,7 @@
 import { common, type TrialModule } from "../module.ts";
 import { fitOne } from "../../layout.ts";
 import plugin from "./plugin.ts";
-import { refusal } from "./sequence.ts";
+import { begins, refusal } from "./sequence.ts";
 
 export default {
   plugin,
@@ -22,5 +22,6 @@ export default {
     surround: given.study.surround,
     trial_index: given.trial.trial_index,
   }),
+  begins: ({ settings }) => begins(settings),
   refusal: ({ settings }, periodMs) => refusal(settings, periodMs),
 } satisfies TrialModule;

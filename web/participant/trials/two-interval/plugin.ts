@@ -4,9 +4,11 @@ import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Pictures } from "../../stimuli.ts";
 import { commonData, commonParameters, SIMULATED } from "../module.ts";
+import { answered } from "../shared/answer.ts";
 import { FALLBACK_PERIOD_MS } from "../shared/player.ts";
+import type { Choice } from "../shared/taking.ts";
 import { inFrames, type PerStep, requested, STEPS } from "./sequence.ts";
-import { type Intervals, Stage } from "./stage.ts";
+import { type Interval, type Intervals, Stage } from "./stage.ts";
 
 const info = <const>{
   name: "two-interval",
@@ -55,22 +57,18 @@ export default class TwoIntervalPlugin implements JsPsychPlugin<Info> {
     const { shown, film, restarts } = await stage.show(inFrames(requested_ms, periodMs), periodMs);
     trial.on_onset?.(true);
 
-    const choice = await stage.taking.choice();
-    const data = {
-      choice: choice.role,
-      ...stage.taking.told(choice, measured),
-      min_visible_ms: Math.min(shown.ms.first, shown.ms.second),
-      requested_ms,
-      shown_frames: shown.frames,
-      shown_ms: shown.ms,
-      restarts,
-      ...film,
-    } satisfies Schemas["TwoIntervalAnswer"];
-    trial.on_choice?.(data);
-    stage.mark(choice.role);
-    await new Promise<void>((resolve) => this.#jsPsych.pluginAPI.setTimeout(resolve, trial.feedback_ms ?? 150));
-    stage.clear();
-    return data;
+    const tell = (choice: Choice<Interval>) =>
+      ({
+        choice: choice.role,
+        ...stage.taking.told(choice, measured),
+        min_visible_ms: Math.min(shown.ms.first, shown.ms.second),
+        requested_ms,
+        shown_frames: shown.frames,
+        shown_ms: shown.ms,
+        restarts,
+        ...film,
+      }) satisfies Schemas["TwoIntervalAnswer"];
+    return answered(this.#jsPsych, trial, stage, tell);
   }
 
   /** `data-only` answers at random at once; `visual` shows the sequence and clicks. */

@@ -19,6 +19,12 @@ export function requested(settings: unknown): PerStep {
   });
 }
 
+/** When the pictures are shown, ms from the beginning: by the requested durations. */
+export function begins(settings: unknown): Record<"first" | "second", number> {
+  const ms = requested(settings);
+  return { first: ms.fixation, second: ms.fixation + ms.first + ms.mask };
+}
+
 /** So many whole frames are nearest to each duration: at least one, but for what is left out. */
 export function inFrames(ms: PerStep, periodMs: number): PerStep {
   return perStep((step) => (ms[step] === 0 ? 0 : Math.max(1, Math.round(ms[step] / periodMs))));

@@ -91,10 +91,10 @@ export class Stage {
     }
     const seed = seedOf(INTERVALS.map((interval) => this.#pictures[interval].sha256), trial_index);
     this.#bitmaps.mask = await createImageBitmap(new ImageData(mask({ width, height, surround, seed }), width, height));
-    // A bitmap's first drawing may have to carry it to the graphics card.
+    // A bitmap's first drawing may have to carry it to the graphics card. What of a film is still to come is not among them.
     const animated = INTERVALS.flatMap((interval) => {
       const picture = this.#pictures[interval];
-      return picture.kind === "animation" ? picture.frames : [];
+      return picture.kind === "animation" ? picture.film.pictures : [];
     });
     for (const bitmap of [...Object.values(this.#bitmaps), ...animated]) this.#context.drawImage(bitmap, 0, 0);
     this.#blank();
