@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
 /// What a study needs to know of a scene.
@@ -52,10 +55,16 @@ impl Remembered {
         self.scenes.insert(scene.to_owned(), known);
         let (path, part) = (path(folder), folder.join(".scenes.json.part"));
         let text = serde_json::to_vec_pretty(self).unwrap_or_default();
-        if let Err(error) = std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &path)) {
+        if let Err(error) = write(&part, &text).and_then(|()| std::fs::rename(&part, &path)) {
             tracing::debug!("{}: {error}", path.display());
         }
     }
+}
+
+/// Like everything in a data folder, for its owner alone.
+fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(true).mode(0o600).open(path)?.write_all(bytes)
 }
 
 fn path(folder: &Path) -> PathBuf {
@@ -76,6 +85,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use std::os::unix::fs::PermissionsExt;
 
     #[test]
     fn a_scene_is_remembered_while_its_files_are_the_same() {
@@ -84,6 +94,8 @@ mod tests {
         let files =
             BTreeMap::from([("a.toml", "1"), ("p.svg", "2")].map(|(k, v)| (k.to_owned(), v.to_owned())));
         Remembered::load(dir.path()).keep(dir.path(), "a.toml", Known { files, facts: facts.clone() });
+        let mode = std::fs::metadata(path(dir.path())).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o600);
         let remembered = Remembered::load(dir.path());
         let with = |puppet: Option<&str>| {
             remembered.facts("a.toml", |path| {
