@@ -60,11 +60,19 @@ function languageSwitch(study: Reading): Node[] {
   const link = (language: string) => {
     const query = new URLSearchParams(location.search);
     query.set("lang", language);
-    const name = new Intl.DisplayNames([language], { type: "language" }).of(language) ?? language;
     const current = study.reading === language ? "true" : null;
-    return h("a", { class: "link", href: `?${query}`, lang: language, hreflang: language, dir: direction(language), "aria-current": current }, name);
+    return h("a", { class: "link", href: `?${query}`, lang: language, hreflang: language, dir: direction(language), "aria-current": current }, nameOf(language));
   };
   return [h("nav", { class: "languages", "aria-label": words("language-switch") }, ...all.map(link))];
+}
+
+/** What a language calls itself; its tag where the browser takes it for none. */
+function nameOf(language: string): string {
+  try {
+    return new Intl.DisplayNames([language], { type: "language" }).of(language) ?? language;
+  } catch {
+    return language;
+  }
 }
 
 /** The study's instructions, and how to answer each of its kinds of trial. */

@@ -10,9 +10,15 @@ export interface Store {
   keys(prefix: string): string[];
 }
 
-/** Wraps a `Storage`; a browser that refuses (private windows, full disks) falls back to memory, and says so in `durable`. */
+/**
+ * Wraps a `Storage`; a browser that refuses (private windows, full disks) falls back to memory, and says so in `durable`. What the page has
+ * written or removed counts for it whatever the disk says later: somebody may have emptied it.
+ */
 export function openStore(storage: () => Storage): Store {
-  const memory = new Map<string, string>();
+  /** What this page has written; null: removed. */
+  const own = new Map<string, string | null>();
+  /** Of that, what is not on the disk. */
+  const unkept = new Set<string>();
   let disk: Storage | null = null;
   try {
     disk = storage();
@@ -23,12 +29,11 @@ export function openStore(storage: () => Storage): Store {
   }
   return {
     get durable() {
-      return disk !== null && memory.size === 0;
+      return disk !== null && unkept.size === 0;
     },
     read<T>(key: string): T | null {
-      let text: string | null = memory.get(key) ?? null;
       try {
-        text ??= disk?.getItem(key) ?? null;
+        const text = own.get(key) ?? (own.has(key) ? null : (disk?.getItem(key) ?? null));
         return text === null ? null : (JSON.parse(text) as T);
       } catch {
         return null;
@@ -36,17 +41,19 @@ export function openStore(storage: () => Storage): Store {
     },
     write(key, value) {
       const text = JSON.stringify(value);
+      own.set(key, text);
       try {
         if (disk === null) throw new Error("no storage");
         disk.setItem(key, text);
         if (disk.getItem(key) !== text) throw new Error("what was stored is not there"); // some private windows take all and keep nothing
-        memory.delete(key);
+        unkept.delete(key);
       } catch {
-        memory.set(key, text);
+        unkept.add(key);
       }
     },
     remove(key) {
-      memory.delete(key);
+      own.set(key, null);
+      unkept.delete(key);
       try {
         disk?.removeItem(key);
       } catch {
@@ -60,7 +67,7 @@ export function openStore(storage: () => Storage): Store {
       } catch {
         // a browser that lets nothing be listed
       }
-      return [...new Set([...kept, ...memory.keys()])].filter((key) => key.startsWith(prefix));
+      return [...new Set([...kept, ...own.keys()])].filter((key) => key.startsWith(prefix) && own.get(key) !== null);
     },
   };
 }

@@ -9,7 +9,9 @@ import { words } from "./words/index.ts";
 export async function visitOf(study: string): Promise<VisitKind> {
   const search = new URLSearchParams(location.search);
   if (!search.has("preview") && !search.has("pilot")) return "participant";
-  return (await persist(() => fetchVisit(study, location.search))).visit;
+  // The language is the page's own, and no part of a signed link.
+  search.delete("lang");
+  return (await persist(() => fetchVisit(study, `?${search}`))).visit;
 }
 
 /** Says on every page that nobody takes part here; a preview begins again with a reload, for nothing is kept. */

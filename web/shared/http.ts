@@ -89,7 +89,7 @@ function json(text: string): unknown {
 export function refusal(status: number, text: string, retryAfter: string | null): Refused {
   const seconds = retryAfter === null ? NaN : Number(retryAfter);
   const wait = Number.isFinite(seconds) && seconds >= 0 ? Math.min(seconds, 120) * 1000 : null;
-  const problem = parsed(text);
+  const problem = parsed(status, text);
   if (problem === null) return new Refused(status, `http_${status}`, `The server answered with status ${status}.`, wait);
   return new Refused(status, problem.code, explain(problem), wait);
 }
@@ -97,11 +97,12 @@ export function refusal(status: number, text: string, retryAfter: string | null)
 /** What is read of a problem document: a later server's codes may be others than those that we know. */
 type Read = Partial<Omit<Problem, "code">> & { code: string };
 
-/** A problem document of ours has a code; a proxy's has none that we know. */
-function parsed(text: string): Read | null {
+/** A problem document of ours has a code and says the answer's status; what firewalls and gateways say in JSON does not. */
+function parsed(status: number, text: string): Read | null {
   try {
     const found: unknown = JSON.parse(text);
-    return typeof found === "object" && found !== null && "code" in found && typeof found.code === "string" ? { ...found, code: found.code } : null;
+    const isProblem = typeof found === "object" && found !== null && "code" in found && "status" in found && found.status === status;
+    return isProblem && typeof found.code === "string" ? { ...found, code: found.code, status } : null;
   } catch {
     return null;
   }

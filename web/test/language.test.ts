@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { choose, inLanguage, languages } from "../participant/language.ts";
-import { target } from "../participant/links.ts";
+import { pieces, target } from "../participant/links.ts";
 import { study as told } from "./mock-study.ts";
 
 const study = { ...told, trial_kinds: [] };
@@ -29,4 +29,23 @@ test("web and e-mail addresses lead somewhere, and nothing else does", () => {
   assert.equal(target("a.b+c@example.org"), "mailto:a.b+c@example.org");
   assert.equal(target("http://"), null);
   assert.equal(target("https://["), null);
+});
+
+/** The addresses that are found in a text. */
+const found = (text: string) => pieces(text).flatMap((piece) => (piece.href === null ? [] : [piece.text]));
+
+test("an address ends with its sentence, and where a script without blanks goes on", () => {
+  assert.deepEqual(found("Ask a.b+c@example.org, or see (https://example.org/a_(b))."), ["a.b+c@example.org", "https://example.org/a_(b)"]);
+  assert.deepEqual(found("请联系study@example.org询问，详见https://example.org/a。谢谢"), ["study@example.org", "https://example.org/a"]);
+  assert.deepEqual(found("質問はwww.example.org/q?a=1へ（mail@example.org）。"), ["www.example.org/q?a=1", "mail@example.org"]);
+  assert.deepEqual(found("Größe: müller@bücher.example"), ["müller@bücher.example"]);
+  assert.deepEqual(found("javascript:alert(1) data:text/html,x a@b"), []);
+  for (const text of ["a", "", "漢字", "x@y.example"]) assert.equal(pieces(text).map((piece) => piece.text).join(""), text);
+});
+
+test("no text takes long to be looked through", () => {
+  const texts = ["漢", "a", "a.", "a@", "www.", ")"].flatMap((part) => [part.repeat(20_000 / part.length), `https://example.org/${part.repeat(19_000 / part.length)}`]);
+  const start = performance.now();
+  texts.forEach(found);
+  assert.ok(performance.now() - start < 3000, `${performance.now() - start} ms`);
 });

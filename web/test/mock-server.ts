@@ -151,6 +151,8 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
       return [200, found()];
     }
     if (method === "GET" && path === `/api/v1/studies/${study.id}/visit`) {
+      const signed = ["preview", "pilot", "exp", "key", "sig"];
+      if (query.has("sig") && [...query.keys()].some((name) => !signed.includes(name))) return problem(403, "link_refused", "This link has been changed.");
       const kind: Schemas["VisitKind"] = { visit: visitKind };
       return [200, kind];
     }

@@ -31,6 +31,26 @@ test("a full disk falls back to memory without losing what is written", () => {
   assert.equal(store.durable, false);
 });
 
+test("a storage that is emptied meanwhile takes nothing from the page that wrote it", () => {
+  const map = new Map<string, string>();
+  const storage = {
+    getItem: (k: string) => map.get(k) ?? null,
+    setItem: (k: string, v: string) => map.set(k, v),
+    removeItem: (k: string) => map.delete(k),
+    key: (i: number) => [...map.keys()][i] ?? null,
+    get length() {
+      return map.size;
+    },
+  } as unknown as Storage;
+  const store = openStore(() => storage);
+  store.write("kelir:a", 1);
+  store.write("kelir:b", 1);
+  store.remove("kelir:b");
+  map.clear();
+  assert.equal(store.read("kelir:a"), 1);
+  assert.deepEqual(store.keys("kelir:"), ["kelir:a"]);
+});
+
 test("a broken entry reads as nothing", () => {
   const store = openStore(() => ({ getItem: () => "{", setItem: () => {}, removeItem: () => {} }) as unknown as Storage);
   assert.equal(store.read("a"), null);

@@ -36,13 +36,24 @@ pub fn csv(report: &StudyReport) -> String {
 }
 
 /// What a spreadsheet takes for the beginning of a formula; those in full width (＝＋－＠) are read like the plain ones in East Asian settings.
-const FORMULAS: [char; 10] = ['=', '+', '-', '@', '\t', '\r', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
+const FORMULAS: [char; 11] =
+    ['=', '+', '-', '@', '\t', '\r', '\n', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
 
-/// A cell of any table that kelir writes: text that a spreadsheet would take for a formula gets an apostrophe before it; quoted where needed
-/// (RFC 4180).
+/// What parts cells besides a comma: a spreadsheet whose decimals have one reads tables so, quotes or not.
+const PARTS: [char; 2] = [';', '\t'];
+
+/// A cell of any table that kelir writes: text that a spreadsheet would take for a formula gets an apostrophe before it, behind a semicolon or
+/// tab too; quoted where needed (RFC 4180).
 pub fn csv_cell(cell: &str) -> String {
-    let number = cell.parse::<f64>().is_ok() && cell.starts_with('-');
-    let cell = if cell.starts_with(FORMULAS) && !number { format!("'{cell}") } else { cell.to_owned() };
+    let is_number = cell.parse().is_ok_and(f64::is_finite) && cell.starts_with('-');
+    let mut shown = String::with_capacity(cell.len());
+    for (at, part) in cell.split_inclusive(PARTS).enumerate() {
+        if part.starts_with(FORMULAS) && !(at == 0 && is_number) {
+            shown.push('\'');
+        }
+        shown.push_str(part);
+    }
+    let cell = shown;
     if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell }
 }
 
@@ -59,6 +70,17 @@ mod tests {
         for formula in ["＝1+1", "＋1", "－1", "＠SUM(A1)", "+1", "@x", "\tx", "-cmd", "-"] {
             assert_eq!(quoted(formula), format!("'{formula}"));
         }
+        for word in ["-inf", "-nan", "-infinity"] {
+            assert_eq!(quoted(word), format!("'{word}"), "no number, but a name to a spreadsheet");
+        }
+        assert_eq!(quoted("\n=1"), "\"'\n=1\"");
+        assert_eq!(
+            quoted("a;=1+1;-2;b"),
+            "a;'=1+1;'-2;b",
+            "where decimals have a comma, a semicolon parts cells"
+        );
+        assert_eq!(quoted("a\t@x"), "a\t'@x");
+        assert_eq!(quoted("one; =two"), "one; =two");
         assert_eq!(quoted("\r=1"), "\"'\r=1\"");
         assert_eq!(quoted("a＝b"), "a＝b");
     }

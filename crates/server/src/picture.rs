@@ -1,5 +1,8 @@
 //! Whether a picture file can be shown: what it is by its content, and that all of it is there.
 
+/// No study shows a picture with a longer side, in pixels.
+const LONGEST_SIDE: u32 = 3840;
+
 /// Media type and size [width, height] of a PNG or JPEG; `None` for anything else.
 pub(crate) fn describe(bytes: &[u8]) -> Option<(&'static str, [u32; 2])> {
     png(bytes).map(|size| ("image/png", size)).or_else(|| jpeg(bytes).map(|size| ("image/jpeg", size)))
@@ -7,7 +10,9 @@ pub(crate) fn describe(bytes: &[u8]) -> Option<(&'static str, [u32; 2])> {
 
 /// Every rule that a picture file breaks, each as a sentence's end: its type, its name's ending, its size, and that it can be decoded to its end.
 pub(crate) fn broken(path: &str, bytes: &[u8], size: [u32; 2]) -> Vec<String> {
-    let Some((media_type, _)) = describe(bytes) else { return vec!["is neither PNG nor JPEG".to_owned()] };
+    let Some((media_type, [w, h])) = describe(bytes) else {
+        return vec!["is neither PNG nor JPEG".to_owned()];
+    };
     let mut rules = Vec::new();
     let ending = path.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
     let (name, named) = match media_type {
@@ -16,6 +21,21 @@ pub(crate) fn broken(path: &str, bytes: &[u8], size: [u32; 2]) -> Vec<String> {
     };
     if !named {
         rules.push(format!("is a {name} by its content; its name ends in .{ending}"));
+    }
+    let wrong = match size {
+        // The study's size was refused, which is told by itself.
+        [0, 0] if w.max(h) > LONGEST_SIDE => Some(format!("no side may be longer than {LONGEST_SIDE}")),
+        [0, 0] => None,
+        // It may be turned by its Exif.
+        _ if [w, h] != size && [h, w] != size => {
+            Some(format!("the study's size is {} × {}", size[0], size[1]))
+        }
+        _ => None,
+    };
+    // What is of another size is not decoded: a small file may hold a picture that is larger than memory.
+    if let Some(wrong) = wrong {
+        rules.push(format!("has {w} × {h} pixels; {wrong}"));
+        return rules;
     }
     // Decoders fill in what a JPEG lacks: its end is asked for apart.
     let cut =
@@ -57,6 +77,22 @@ fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_has_another_size_is_not_decoded() {
+        // The head of a picture of 10 GB.
+        let head = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xea\x60\0\0\xea\x60\x08\x02";
+        let rule = "has 60000 × 60000 pixels; the study's size is 592 × 333";
+        assert_eq!(broken("a.png", head, [592, 333]), [rule]);
+        assert_eq!(
+            broken("a.png", head, [0, 0]),
+            ["has 60000 × 60000 pixels; no side may be longer than 3840"]
+        );
+        assert_eq!(
+            broken("a.jpg", head, [592, 333]),
+            ["is a PNG by its content; its name ends in .jpg", rule]
+        );
+    }
 
     #[test]
     fn heads_are_read_and_rubbish_is_not() {

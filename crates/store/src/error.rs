@@ -68,6 +68,8 @@ pub enum Trouble {
     Failing,
     /// The database's file is damaged.
     Damaged,
+    /// The database's file is not where it was opened.
+    Gone,
 }
 
 impl Trouble {
@@ -79,6 +81,7 @@ impl Trouble {
             Trouble::ReadOnly => "The server's data folder cannot be written to.",
             Trouble::Failing => "The server's disk does not do what it is asked.",
             Trouble::Damaged => "The server's database is damaged.",
+            Trouble::Gone => "The server's database was moved, replaced or deleted.",
         }
     }
 
@@ -87,6 +90,9 @@ impl Trouble {
         match self {
             Trouble::Full | Trouble::Locked | Trouble::ReadOnly | Trouble::Failing => {
                 "Please try again shortly."
+            }
+            Trouble::Gone => {
+                "Nothing is stored until it is back where it was, or the server has been started again. Please try again later."
             }
             Trouble::Damaged => {
                 "Nothing that is whole is lost by waiting, and trying again does not mend it. Researchers: keep a copy of the data folder, then put a \

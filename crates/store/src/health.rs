@@ -12,6 +12,7 @@ impl Store {
     /// # Errors
     /// The trouble there is; [`Trouble::Full`] also where little space is left.
     pub async fn check(&self) -> Result<(), StoreError> {
+        self.place.holds()?;
         if let Some(free) = self.free_bytes()?
             && free < LEAST_FREE_BYTES
         {

@@ -19,6 +19,7 @@ mod packing;
 mod packings;
 mod persons;
 mod pixels;
+mod place;
 mod plans;
 mod private;
 mod readers;

@@ -3,6 +3,7 @@
 use crate::error::StoreError;
 use crate::files::Files;
 use crate::layout;
+use crate::place::Place;
 use crate::private;
 use crate::readers::Readers;
 use crate::stimuli::blocking;
@@ -23,6 +24,7 @@ pub(crate) const BUSY: Duration = Duration::from_secs(5);
 pub struct Store {
     /// Writers queue here instead of failing as busy, and the chain of answers has one order.
     writer: Writer,
+    pub(crate) place: Place,
     pub(crate) readers: Readers,
     pub(crate) reader: SqlitePool,
     pub(crate) files: Files,
@@ -41,11 +43,12 @@ impl Store {
         let path = folder.join(DATABASE);
         let (database, stimuli) = (path.clone(), files.clone());
         blocking(move || layout::bring_up_to_date(&mut connect(&database)?, &stimuli)).await?;
+        let place = Place::of(&path)?;
         let options = SqliteConnectOptions::new().filename(&path).busy_timeout(BUSY).read_only(true);
         let reader = SqlitePoolOptions::new().max_connections(4).connect_with(options).await?;
         let readers = Readers::new(path.clone());
         let writer = Writer::start(move || connect(&path))?;
-        Ok(Store { writer, readers, reader, files, folder: folder.to_owned() })
+        Ok(Store { writer, place, readers, reader, files, folder: folder.to_owned() })
     }
 
     /// The data folder.
@@ -66,7 +69,10 @@ impl Store {
         &self,
         job: impl FnOnce(&Connection) -> Result<T, Refused<E>> + Send + 'static,
     ) -> Result<T, E> {
-        self.writer.run(job).await
+        self.place.holds()?;
+        let done = self.writer.run(job).await?;
+        self.place.holds_what_was_written()?;
+        Ok(done)
     }
 
     /// The writer's `synchronous` (2 is FULL) and `foreign_keys` (1 is on).

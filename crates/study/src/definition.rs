@@ -5,7 +5,7 @@ use crate::conduct::{ResponseRules, SessionRules};
 use crate::display::DisplayRules;
 use crate::languages::{self, Translation};
 use crate::trials::{TrialKind, TrialName};
-use crate::visits::Flag;
+use crate::visits::{Flag, parameter};
 use kelir_stats::psychometric::{Lapse, Sigmoid};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -371,7 +371,8 @@ impl Completion {
         while let Some((before, after)) = rest.split_once('[') {
             let Some((name, tail)) = after.split_once(']') else { break };
             address.push_str(before);
-            let value = if name == "CODE" { Some(code) } else { params.get(name).map(String::as_str) };
+            let value =
+                if name == "CODE" { Some(code) } else { parameter(params, name).map(|(_, v)| v.as_str()) };
             percent_encode(value.unwrap_or_default(), &mut address);
             rest = tail;
         }

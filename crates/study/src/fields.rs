@@ -172,10 +172,18 @@ pub(crate) fn integer(value: &Value, low: i64, high: i64) -> Option<u64> {
     value.as_integer().filter(|i| (low..=high).contains(i)).and_then(|i| u64::try_from(i).ok())
 }
 
-/// A string that is not blank and has at most `most` characters.
+/// A string that is not blank and has at most `most` characters, none of which controls a terminal.
 pub(crate) fn text(value: &Value, most: usize) -> Option<String> {
-    value.as_str().map(str::trim).filter(|s| !s.is_empty() && s.chars().count() <= most).map(str::to_owned)
+    let controls = |c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t');
+    let shows = |c: char| !c.is_whitespace() && !UNSEEN.contains(&c);
+    let text = value.as_str()?.trim();
+    let fits = text.chars().any(shows) && text.chars().count() <= most && !text.contains(controls);
+    fits.then(|| text.to_owned())
 }
+
+/// Characters without a width: joiners, marks of direction, the mark of a byte order.
+const UNSEEN: [char; 7] =
+    ['\u{200b}', '\u{200c}', '\u{200d}', '\u{200e}', '\u{200f}', '\u{2060}', '\u{feff}'];
 
 /// The rule of [`identifier`] in words.
 pub(crate) const IDENTIFIER: &str = "a name of 1 to 64 of a-z, 0-9 and -, starting with a letter or digit";

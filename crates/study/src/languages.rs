@@ -4,7 +4,7 @@ use crate::definition::{StudyDefinition, Texts};
 use crate::fields::{Fields, Gatherer, text};
 use crate::parse::{QUESTION, TITLE, read_texts};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use toml::Value;
 use utoipa::ToSchema;
 
@@ -55,19 +55,25 @@ pub(crate) fn read_translations(
         fields.report("translations", Some(value), "must be a table with a table for each language");
         return None;
     };
-    let mut translations = BTreeMap::new();
+    let mut translations = BTreeMap::<String, Translation>::new();
+    let mut known: Vec<String> = Vec::new();
     for (tag, value) in table {
         let path = format!("translations.{tag}");
         if !language(tag) {
             gatherer.report(&path, Some(&Value::String(tag.clone())), format!("must be {LANGUAGE}"));
         }
-        if own == Some(tag) {
+        if own.is_some_and(|own| own.eq_ignore_ascii_case(tag)) {
             gatherer.report(
                 &path,
                 None,
                 "is the study's own language, whose texts stand outside the translations",
             );
         }
+        // "pt-BR" and "pt-br" are one language.
+        if known.contains(&tag.to_ascii_lowercase()) {
+            gatherer.report(&path, None, "is a language that is there already");
+        }
+        known.push(tag.to_ascii_lowercase());
         let mut fields = Fields::of(gatherer, path, value)?;
         let title = fields.need("title", TITLE, |v| text(v, 200));
         let question = fields.need("question", QUESTION, |v| text(v, 300));
@@ -80,14 +86,25 @@ pub(crate) fn read_translations(
     Some(translations)
 }
 
-/// A well-formed language tag (BCP 47, its shape alone): letters, then parts of letters and digits.
+/// A language tag as browsers take it (BCP 47 without extensions): language, then script, region and variants where they are there, in this order.
 fn language(tag: &str) -> bool {
-    let mut parts = tag.split('-');
+    let letters = |part: &str| part.bytes().all(|b| b.is_ascii_alphabetic());
+    let digits = |part: &str| part.bytes().all(|b| b.is_ascii_digit());
+    let alphanumeric = |part: &str| part.bytes().all(|b| b.is_ascii_alphanumeric());
+    let is_script = |part: &str| part.len() == 4 && letters(part);
+    let is_region = |part: &str| part.len() == 2 && letters(part) || part.len() == 3 && digits(part);
+    let is_variant = |part: &str| {
+        alphanumeric(part) && ((5..=8).contains(&part.len()) || part.len() == 4 && digits(&part[..1]))
+    };
+    let mut parts = tag.split('-').peekable();
     let first = parts.next().unwrap_or_default();
+    parts.next_if(|part| is_script(part));
+    parts.next_if(|part| is_region(part));
+    let mut variants = BTreeSet::new();
     tag.len() <= 35
         && (2..=3).contains(&first.len())
         && first.bytes().all(|b| b.is_ascii_lowercase())
-        && parts.all(|part| (2..=8).contains(&part.len()) && part.bytes().all(|b| b.is_ascii_alphanumeric()))
+        && parts.all(|part| is_variant(part) && variants.insert(part.to_ascii_lowercase()))
 }
 
 pub(crate) fn unnamed() -> String {

@@ -56,6 +56,27 @@ test("in Arabic the text runs from right to left, and left stays left", async (t
   assert.equal(session(v.mock).display.language, "ar");
 });
 
+test("a signed link for trying a study survives the choice of another language", async (t) => {
+  const v = await visit(t, { query: "?preview=1&exp=9&key=k&sig=s", visitKind: "preview" });
+  await v.page.getByRole("navigation").getByRole("link", { name: "Deutsch" }).click();
+  await v.page.getByRole("button", { name: "Ich willige ein und nehme teil" }).click();
+  await v.hook("start").waitFor();
+  assert.equal(await v.hook("ribbon").count(), 1);
+});
+
+test("a language that the browser has no name for stands by its tag", async (t) => {
+  const unnamed = () => {
+    const Names = Intl.DisplayNames;
+    Intl.DisplayNames = function (tags, options) {
+      if (tags[0] === "ar") throw new RangeError("Incorrect locale information provided");
+      return new Names(tags, options);
+    };
+  };
+  const v = await visit(t, { init: [unnamed] });
+  await v.hook("consent-agree").waitFor();
+  assert.deepEqual(await v.page.getByRole("navigation").getByRole("link").allInnerTexts(), ["English", "Deutsch", "ar"]);
+});
+
 test("addresses in a study's texts are links that lead beside it, and nothing else is", async (t) => {
   const v = await visit(t, { query: "?lang=de" });
   await v.hook("consent-agree").waitFor();

@@ -46,6 +46,7 @@ export const troubles = [
   { name: "a network without PUT", fault: always(put, { status: 405, html: "no" }) },
   { name: "a server's proxy without PUT", fault: always(put, { status: 405 }) },
   { name: "a firewall that blocks PUT", fault: always(put, { status: 403, html: "Blocked" }) },
+  { name: "a cloud's gateway that refuses in JSON", fault: first(3, toApi, { status: 403, body: { code: "AccessDenied", message: "Forbidden" } }) },
   { name: "a proxy that takes no long bodies", fault: () => ({ method, body }) => (method === "PUT" && JSON.stringify(body).includes('"viewport"') ? { status: 413, html: "too large" } : null) },
   { name: "a captive portal before consent", fault: first(2, toApi, portal) },
   { name: "a captive portal amid the trials", fault: first(2, put, portal) },

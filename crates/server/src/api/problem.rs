@@ -257,8 +257,14 @@ mod tests {
 
     #[test]
     fn trouble_with_the_disk_is_told_as_such_and_passes() {
-        for trouble in [Trouble::Full, Trouble::Locked, Trouble::ReadOnly, Trouble::Failing, Trouble::Damaged]
-        {
+        for trouble in [
+            Trouble::Full,
+            Trouble::Locked,
+            Trouble::ReadOnly,
+            Trouble::Failing,
+            Trouble::Damaged,
+            Trouble::Gone,
+        ] {
             let error = StoreError::Trouble { trouble, message: "a path of the server".to_owned() };
             let problem = Box::<Problem>::from(error);
             assert!(problem.detail.starts_with(trouble.sentence()), "{}", problem.detail);

@@ -9,11 +9,11 @@ use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Redirect, Response};
 use std::sync::Arc;
 
-/// There is no front page: the one study, or the console.
-pub(crate) async fn get_root(State(app): State<Arc<App>>) -> Redirect {
+/// There is no front page: the one study, with the link's parameters, or the console.
+pub(crate) async fn get_root(State(app): State<Arc<App>>, uri: Uri) -> Redirect {
     let mut studies = app.studies.keys();
     match (studies.next(), studies.next()) {
-        (Some(only), None) => Redirect::temporary(&format!("/study/{only}")),
+        (Some(only), None) => Redirect::temporary(&format!("/study/{only}{}", query(&uri))),
         _ => Redirect::temporary("/console"),
     }
 }
@@ -30,8 +30,11 @@ pub(crate) async fn get_participant(
 
 /// The same address without its last slash, the parameters kept: a panel's are in them.
 pub(crate) async fn without_slash(uri: Uri) -> Redirect {
-    let query = uri.query().map(|query| format!("?{query}")).unwrap_or_default();
-    Redirect::permanent(&format!("{}{query}", uri.path().trim_end_matches('/')))
+    Redirect::permanent(&format!("{}{}", uri.path().trim_end_matches('/'), query(&uri)))
+}
+
+fn query(uri: &Uri) -> String {
+    uri.query().map(|query| format!("?{query}")).unwrap_or_default()
 }
 
 /// The researcher's page, at any of its addresses.

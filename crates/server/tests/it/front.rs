@@ -86,6 +86,9 @@ async fn people_get_pages_and_programs_get_problems() {
         let answer = browse(&client, path).await;
         assert_eq!((answer.status, answer.header("location")), (StatusCode::PERMANENT_REDIRECT, to));
     }
+    let one = browse(&client, "/?PROLIFIC_PID=5f%200a&x=1").await;
+    assert_eq!(one.status, StatusCode::TEMPORARY_REDIRECT);
+    assert_eq!(one.header("location"), "/study/shadow-puppets?PROLIFIC_PID=5f%200a&x=1");
     for path in ["/study/nobody", "/console/studies/x"] {
         assert!(browse(&client, path).await.text().contains("<script"), "{path}: the page itself");
     }

@@ -220,7 +220,7 @@ async fn simulations_are_a_researchers_marked_and_left_out_unless_asked_for() {
 #[tokio::test(flavor = "multi_thread")]
 async fn participants_are_a_table_with_all_that_is_known_and_allowed() {
     let client = with("[session]\nparams = [\"batch\"]").await;
-    let params = json!({ "PROLIFIC_PID": "a@b", "batch": "7", "secret": "s3cr3t" });
+    let params = json!({ "PROLIFIC_PID": "a@b", "Batch": "7", "secret": "s3cr3t" });
     let display = json!({ "resolution": [2560, 1440], "viewport": [1280, 720], "device_pixel_ratio": 2, "touch": false, "language": "de" });
     let request = Request::post(SESSIONS)
         .header(header::USER_AGENT, "Gamelan/1")

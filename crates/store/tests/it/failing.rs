@@ -24,6 +24,32 @@ async fn a_lock_that_another_holds_for_too_long_is_said_and_waited_out() {
     store.check().await.unwrap();
 }
 
+/// A sync tool, a restored backup or a tidy hand: what is written to a file without a name ends with the process.
+#[cfg(unix)]
+#[tokio::test(flavor = "multi_thread")]
+async fn nothing_is_acknowledged_into_a_file_that_is_no_longer_there() {
+    let (folder, store, served) = open().await;
+    let session = begin(&store, &served, IDLE).await;
+    let [database, aside] = ["kelir.sqlite", "aside"].map(|name| folder.path().join(name));
+    let refused = async |trial: u32| {
+        let error = try_append(&store, &session, trial).await.unwrap_err();
+        assert_eq!(error.as_trouble(), Some(Trouble::Gone), "{error}");
+        assert_eq!(store.check().await.unwrap_err().as_trouble(), Some(Trouble::Gone));
+    };
+    std::fs::rename(&database, &aside).unwrap();
+    refused(0).await;
+    std::fs::copy(&aside, &database).unwrap();
+    refused(1).await;
+    std::fs::rename(&aside, &database).unwrap();
+    store.check().await.unwrap();
+    assert_eq!(append(&store, &session, answer(2, true, 500.0)).await, Appended::Stored);
+    // What was committed last lies beside the database until it is brought into it.
+    std::fs::remove_file(folder.path().join("kelir.sqlite-wal")).unwrap();
+    refused(3).await;
+    std::fs::remove_dir_all(folder.path()).unwrap();
+    refused(4).await;
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_job_that_fails_or_panics_takes_no_other_with_it() {
     let (_folder, store, served) = open().await;

@@ -2,7 +2,7 @@
 
 use super::{SessionStatus, plain};
 use crate::schema::{Column, Record};
-use crate::visits::{Flag, SessionKind};
+use crate::visits::{Flag, SessionKind, parameter};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -181,7 +181,9 @@ impl ParticipantColumns {
             .ok()
             .and_then(|record| record.as_object().cloned())
             .unwrap_or_default();
-        values.extend(params.iter().map(|name| (param(name), json!(sent.get(name)))));
+        values.extend(
+            params.iter().map(|name| (param(name), json!(parameter(sent, name).map(|(_, value)| value)))),
+        );
         columns.iter().map(|column| values.get(&column.name).map(plain).unwrap_or_default()).collect()
     }
 }

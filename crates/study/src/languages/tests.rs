@@ -99,6 +99,14 @@ fn every_problem_of_a_translation_is_named() {
         own,
         ["translations.de: is the study's own language, whose texts stand outside the translations"]
     );
+    let again = GERMAN.replace("translations.de", "translations.de-AT");
+    let twice = problems(&format!("{STUDY}{again}{}", again.replace("de-AT", "de-at")));
+    assert_eq!(twice, ["translations.de-at: is a language that is there already"]);
+    let own = problems(&format!("language = \"de-at\"\n{STUDY}{again}"));
+    assert_eq!(
+        own,
+        ["translations.de-AT: is the study's own language, whose texts stand outside the translations"]
+    );
     let named = problems(&format!("language = \"Deutsch\"\n{STUDY}"));
     assert!(named[0].starts_with("language: must be a language tag"), "{named:?}");
     let table = problems(&format!("translations = 3\n{STUDY}"));
@@ -109,6 +117,13 @@ fn every_problem_of_a_translation_is_named() {
 fn language_tags_by_their_shape() {
     for tag in ["de", "pt-BR", "zh-Hant", "ar", "gsw", "de-CH-1996"] {
         assert!(language(tag), "{tag}");
+    }
+    for tag in ["sr-Latn-RS", "es-419", "sl-rozaj-biske-1994"] {
+        assert!(language(tag), "{tag}");
+    }
+    // No browser knows these, and each would refuse to name them: parts that are none, in another order, or said twice.
+    for tag in ["de-ab12", "en-12", "en-US-US", "de-abcd-abcd", "zh-yue", "sl-rozaj-Rozaj", "de-1996-DE"] {
+        assert!(!language(tag), "{tag}");
     }
     for tag in ["", "d", "DE", "german", "de_AT", "de-", "de-x", "ar-\u{661}1", "de-aaaaaaaaa"] {
         assert!(!language(tag), "{tag}");

@@ -4,6 +4,7 @@ use crate::conduct::SessionRules;
 use crate::definition::{CREDITING_PARAMS, Completion, PANEL_PARAMS, StudyDefinition};
 use crate::fields::{Fields, Gatherer, shorten, text};
 use crate::problems::Problem;
+use std::net::Ipv4Addr;
 use toml::Value;
 
 /// From this edition on an address that breaks a rule is refused. Before, studies ran with it, and go on: it is a warning.
@@ -55,13 +56,26 @@ impl StudyDefinition {
     }
 }
 
+/// Whether browsers take this for a host, with its port where it has one.
+fn leads_somewhere(host: &str) -> bool {
+    let (name, port) = host.split_once(':').unwrap_or((host, ""));
+    let plain = |c: char| c.is_alphanumeric() || "-.".contains(c);
+    let last = name.trim_end_matches('.').rsplit('.').next().unwrap_or_default();
+    // Where the last part is a number, all of it is an address.
+    let is_address = !last.is_empty() && last.bytes().all(|b| b.is_ascii_digit());
+    !name.is_empty()
+        && !name.starts_with(['.', '-'])
+        && name.chars().all(plain)
+        && (port.is_empty() || port.bytes().all(|b| b.is_ascii_digit()) && port.parse::<u16>().is_ok())
+        && (!is_address || name.parse::<Ipv4Addr>().is_ok())
+}
+
 /// The rules that an address breaks: a host, placeholders that are filled in, and something among them to be credited by.
 fn broken(completion: &Completion, session: &SessionRules) -> Vec<String> {
     let mut rules = Vec::new();
     let Some(address) = completion.redirect.as_deref() else { return rules };
     let host = address.trim_start_matches("https://").split(['/', '?', '#']).next().unwrap_or_default();
-    let plain = |c: char| c.is_alphanumeric() || "-.:".contains(c);
-    if host.is_empty() || host.starts_with(['.', ':', '-']) || !host.chars().all(plain) {
+    if !leads_somewhere(host) {
         rules.push(format!("must lead to a host, and {host:?} is none"));
     }
     let placeholders = match Completion::placeholders(address) {

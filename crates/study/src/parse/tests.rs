@@ -65,6 +65,10 @@ fn a_good_file_is_read() {
     let params = [("PROLIFIC_PID".to_owned(), "a&b".to_owned())].into();
     let address = study.completion.redirect_to("X Y", &params).unwrap();
     assert_eq!(address, "https://example.org/done?cc=X%20Y&who=a%26b");
+    // Whoever is named by a parameter in small letters is sent back by it, too.
+    let small = [("prolific_pid".to_owned(), "a".to_owned())].into();
+    let address = study.completion.redirect_to("X", &small).unwrap();
+    assert_eq!(address, "https://example.org/done?cc=X&who=a");
 }
 
 #[test]
@@ -106,6 +110,10 @@ fn each_rule_refuses_its_breach() {
     let cases = [
         ("title = \"Two blocks\"", "", "title"),
         ("title = \"Two blocks\"", "title = \"  \"", "title"),
+        ("title = \"Two blocks\"", "title = \"a\\u0000b\"", "title"),
+        ("title = \"Two blocks\"", "title = \"\\u001b[31mred\"", "title"),
+        ("title = \"Two blocks\"", "title = \"\\u200b\\ufeff\"", "title"),
+        ("consent = \"c\"", "consent = \"\\u0007c\"", "texts.consent"),
         ("seed = 7", "seed = 1.5", "seed"),
         ("seed = 7", "seed = 7\nsurround = nan", "surround"),
         ("seed = 7", "seed = 7\nsurround = inf", "surround"),

@@ -9,6 +9,15 @@ pub const ID_PARAMETERS: [&str; 4] = ["PROLIFIC_PID", "workerId", "subject_id", 
 /// Bytes of the longest id, as UTF-8.
 pub const LONGEST_ID: usize = 512;
 
+/// A parameter of a link by its name. One in other letters (small for capital) is the same name, unless the exact one is there too.
+pub(crate) fn parameter<'a>(
+    params: &'a BTreeMap<String, String>,
+    name: &str,
+) -> Option<(&'a String, &'a String)> {
+    let same = |(known, _): &(&String, &String)| known.to_lowercase() == name.to_lowercase();
+    params.get_key_value(name).or_else(|| params.iter().find(same))
+}
+
 /// An id that cannot be taken.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RefusedId {
@@ -21,8 +30,7 @@ pub struct RefusedId {
 }
 
 impl SessionRules {
-    /// The parameter that names the participant, with the id as it was sent; `None` where the link names nobody. A name in other letters (small
-    /// for capital) is the same name, unless the exact one is there too.
+    /// The parameter that names the participant, with the id as it was sent; `None` where the link names nobody.
     ///
     /// # Errors
     /// The id is empty, too long, or holds control characters.
@@ -34,11 +42,8 @@ impl SessionRules {
             Some(name) => vec![name],
             None => ID_PARAMETERS.to_vec(),
         };
-        let named = |name: &&str| {
-            let exact = params.get_key_value(*name);
-            exact.or_else(|| params.iter().find(|(known, _)| known.to_lowercase() == name.to_lowercase()))
-        };
-        let found: Vec<(&String, &String)> = names.iter().filter_map(named).collect();
+        let found: Vec<(&String, &String)> =
+            names.iter().filter_map(|name| parameter(params, name)).collect();
         let filled = found.iter().find(|(_, value)| !value.is_empty());
         let Some((name, value)) = filled.or(found.first()) else { return Ok(None) };
         if (1..=LONGEST_ID).contains(&value.len()) && !value.contains(char::is_control) {

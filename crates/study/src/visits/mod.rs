@@ -6,6 +6,7 @@ mod judged;
 mod pace;
 
 pub use balance::{Balance, UnevenItem};
+pub(crate) use identity::parameter;
 pub use identity::{ID_PARAMETERS, LONGEST_ID, RefusedId};
 pub use judged::{Judged, LeftOut, Repeated};
 pub use pace::Pace;
