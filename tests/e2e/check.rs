@@ -52,6 +52,12 @@ fn pictures_that_could_not_be_shown_are_named_with_what_is_wrong() {
     ] {
         assert!(said.contains(phrase), "no {phrase:?} in\n{said}");
     }
+    // A small file may hold a picture that is larger than memory.
+    let mut bomb = png.clone();
+    bomb[16..24].copy_from_slice(&[60_000u32.to_be_bytes(), 60_000u32.to_be_bytes()].concat());
+    std::fs::write(studies.join("a.png"), bomb).unwrap();
+    let said = wrong(data.path(), "small");
+    assert!(said.contains("has 60000 × 60000 pixels; the study's size is 64 × 36"), "{said}");
     // A head that is right, and nothing behind it.
     std::fs::write(studies.join("a.png"), &png[..png.len() / 2]).unwrap();
     std::fs::write(studies.join("b.jpg"), b"GIF89a").unwrap();
@@ -75,6 +81,9 @@ fn a_redirect_holds_the_code_and_nothing_that_is_never_filled_in() {
         ("https://example.org/?cc=CODE]", &["stands alone", "]"]),
         ("https://[CODE]/", &["host"]),
         ("https:///?cc=[CODE]", &["host"]),
+        ("https://example.org:99999/?cc=[CODE]", &["host"]),
+        ("https://example.org:8o/?cc=[CODE]", &["host"]),
+        ("https://192.0.2.999/?cc=[CODE]", &["host"]),
     ] {
         edit(data.path(), "studies/small.toml", good, address);
         let said = wrong(data.path(), "small");
@@ -187,6 +196,11 @@ fn a_new_study_is_good_and_is_served_and_nothing_is_written_over() {
     // An empty folder is taken.
     std::fs::create_dir(folder.path().join("empty")).unwrap();
     kelir_ok(&["new", folder.path().join("empty").to_str().unwrap()]);
+    // What is said to be typed can be typed.
+    let odd = folder.path().join("it's mine");
+    let said = kelir_ok(&["new", odd.to_str().unwrap()]);
+    let quoted = format!("--data '{}'", odd.to_str().unwrap().replace('\'', "'\\''"));
+    assert!(said.contains(&quoted), "no {quoted} in\n{said}");
 
     // The study that ships would take a minute to draw: a small one of the same name hides it.
     let small = small_data();

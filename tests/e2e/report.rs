@@ -174,6 +174,12 @@ fn a_report_says_what_the_answers_say_in_every_form() {
     assert!(std::fs::read(&sheet).unwrap().starts_with(b"PK"));
     let one = kelir(&["export", STUDY, "--data", data, "--table", "pairs", "-o", sheet.to_str().unwrap()]);
     assert_eq!(one.status.code(), Some(2), "a spreadsheet holds every table");
+    // What is wrong with a file is said once.
+    let folder = at("folder.csv");
+    std::fs::create_dir(&folder).unwrap();
+    let refused = kelir(&["export", STUDY, "--data", data, "-o", folder.to_str().unwrap()]);
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(said.matches("folder.csv").count(), 1, "{said}");
 
     looks_right(&at("report.html"));
 }

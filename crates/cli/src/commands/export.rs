@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::ValueEnum;
 use kelir_render::file::write_atomic;
 use kelir_server::{
@@ -76,7 +76,7 @@ pub fn run(args: &Args) -> Result<()> {
     })?;
     match &args.output {
         None => print(&String::from_utf8_lossy(&content)),
-        Some(file) => write_atomic(file, &content).with_context(|| file.display().to_string()),
+        Some(file) => Ok(write_atomic(file, &content)?),
     }
 }
 

@@ -45,12 +45,23 @@ pub fn run(args: &Args) -> Result<()> {
     }
     fs::rename(staged.path(), &dir).with_context(|| dir.display().to_string())?;
     let shown = args.dir.display();
+    let (study, data) = (args.dir.join("studies/my-study.toml"), &args.dir);
     print(&format!(
         "{shown} holds a study that runs. What next:\n\n  \
-         kelir study check {shown}/studies/my-study.toml\n  \
-         kelir serve --data {shown}\n\n\
-         {shown}/README.md says what is what."
+         kelir study check {}\n  \
+         kelir serve --data {}\n\n\
+         {shown}/README.md says what is what.",
+        word(&study),
+        word(data)
     ))
+}
+
+/// A path as one word of a shell's command, and none of its options.
+fn word(path: &Path) -> String {
+    let shown = path.display().to_string();
+    let shown = if shown.starts_with('-') { format!("./{shown}") } else { shown };
+    let plain = |c: char| c.is_alphanumeric() || "/._-+,:@%".contains(c);
+    if shown.chars().all(plain) { shown } else { format!("'{}'", shown.replace('\'', "'\\''")) }
 }
 
 /// Errors: something is there already.

@@ -57,7 +57,7 @@ pub fn run(args: Args) -> Result<()> {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    write_atomic(path, bytes).with_context(|| path.display().to_string())
+    Ok(write_atomic(path, bytes)?)
 }
 
 /// What the file's ending asks for.
