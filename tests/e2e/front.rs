@@ -152,6 +152,29 @@ fn the_log_says_what_was_asked_and_nobodys_secrets() {
     }
 }
 
+#[test]
+fn stopping_while_pictures_are_drawn_is_no_fault_of_their_study() {
+    // The built-in study, whose pictures take minutes.
+    let (data, port) = (tempfile::tempdir().unwrap(), free_port());
+    let mut child = start_by("", data.path(), port, Stdio::piped());
+    let mut pipe = child.stderr.take().unwrap();
+    let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
+    let asked = || agent.get(format!("http://127.0.0.1:{port}/healthz")).call();
+    while !asked().is_ok_and(|answer| answer.status().as_u16() == 200) {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    let stimuli = data.path().join("stimuli");
+    let drawn = || std::fs::read_dir(&stimuli).is_ok_and(|mut files| files.next().is_some());
+    while !drawn() {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    stop(child);
+    let mut log = String::new();
+    pipe.read_to_string(&mut log).unwrap();
+    assert!(log.contains("kelir::audit: stopped"), "{log}");
+    assert!(!log.contains("cannot be taken") && !log.contains("ERROR"), "{log}");
+}
+
 /// A server at a terminal, of a user who gives everybody rights to what they make.
 fn start_at_terminal(data: &Path, port: u16) -> Child {
     let serve = format!(

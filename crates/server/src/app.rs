@@ -17,6 +17,7 @@ use kelir_store::{Session, Store, StoreError, StoredAnswers, sha256_hex};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::Answers;
 use std::collections::{BTreeMap, HashMap};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Duration;
 use tokio::sync::Semaphore;
@@ -44,6 +45,8 @@ pub(crate) struct App {
     pub(crate) links: Links,
     pub(crate) previews: Previews,
     pub(crate) trusted_proxies: TrustedProxies,
+    /// The server was asked to stop: what fails from then on is no fault.
+    pub(crate) stopping: AtomicBool,
     /// What sessions that began with other files or versions go on with, by study, file and version.
     begun: RwLock<HashMap<[String; 3], Begun>>,
     /// Answers as last read, by study and versions: what has come since is all that a result has to read.
@@ -85,6 +88,8 @@ impl BrokenStudy {
 pub(crate) struct LoadedStudy {
     pub(crate) study: Arc<StudyDefinition>,
     pub(crate) file_hash: String,
+    /// What may be a mistake in it.
+    pub(crate) warnings: Vec<String>,
     stimuli: RwLock<Stimuli>,
 }
 
@@ -103,6 +108,12 @@ pub(crate) enum Stimuli {
     Failed(String),
 }
 
+/// What may be a mistake in a study that is good.
+fn warnings(library: &Library, study: &StudyDefinition) -> Vec<String> {
+    let warnings = library.warnings(&format!("studies/{}.toml", study.id), study);
+    warnings.iter().map(ToString::to_string).collect()
+}
+
 impl App {
     pub(crate) fn new(
         store: Store,
@@ -114,15 +125,18 @@ impl App {
     ) -> App {
         let loaded = |study: StudyDefinition| LoadedStudy {
             file_hash: study.file_hash(),
+            warnings: warnings(&library, &study),
             stimuli: RwLock::new(Stimuli::Preparing(None)),
             study: Arc::new(study),
         };
+        let studies = studies.into_iter().map(|study| (study.id.clone(), loaded(study))).collect();
         App {
             store,
             library,
             maker: config.maker.clone(),
+            stopping: AtomicBool::new(false),
             broken,
-            studies: studies.into_iter().map(|study| (study.id.clone(), loaded(study))).collect(),
+            studies,
             limiter: Limiter::default(),
             starts: Tally::new(STARTS_WITHIN),
             integrity: Integrity::default(),

@@ -101,6 +101,23 @@ pub(crate) fn problems_around(library: &Library, file: &str, study: &StudyDefini
     found.problems
 }
 
+/// What picture files ask that nobody will do: participants see them otherwise than their maker may.
+pub(crate) fn doubts_around(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
+    let mut found = Found { file, problems: Vec::new() };
+    for (name, condition) in &study.conditions {
+        let Condition::Files { files } = condition else { continue };
+        for (item, path) in
+            files.iter().flat_map(|(item, of)| of.paths().iter().map(move |path| (item, path)))
+        {
+            let unheeded = library.read(&beside(file, path)).map(|bytes| picture::unheeded(&bytes));
+            for rule in unheeded.unwrap_or_default() {
+                found.add(format!("conditions.{name}.files.{item}"), Some(path), rule);
+            }
+        }
+    }
+    found.problems
+}
+
 /// What keeps pictures from being drawn, found by drawing each in a small size. What [`problems_around`] finds is not said again.
 pub(crate) fn problems_drawing(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
     let mut found = Found { file, problems: Vec::new() };

@@ -103,6 +103,11 @@ impl Library {
         self.checked(path, true)
     }
 
+    /// What may be a mistake in a study that is good: in its file, and in the pictures that it names.
+    pub fn warnings(&self, path: &str, study: &StudyDefinition) -> Vec<Problem> {
+        [study.warnings(path), check::doubts_around(self, path, study)].concat()
+    }
+
     /// What a participant downloads of each block of a study that is good, at each of its sizes.
     ///
     /// # Errors

@@ -52,6 +52,68 @@ pub(crate) fn broken(path: &str, bytes: &[u8], size: [u32; 2]) -> Vec<String> {
     rules
 }
 
+/// What a picture file asks of whoever shows it that no participant's page does, each as a sentence's end: they see its first picture, its numbers
+/// taken for sRGB's.
+pub(crate) fn unheeded(bytes: &[u8]) -> Vec<String> {
+    let mut asked = Vec::new();
+    let chunks = chunks(bytes);
+    let of = |kind: &[u8; 4]| chunks.iter().find(|(name, _)| name == kind).map(|(_, data)| *data);
+    if of(b"acTL").is_some() {
+        asked.push("moves, and its first picture alone is shown: keep that one in a file".to_owned());
+    }
+    let profile =
+        of(b"iCCP").and_then(|data| data.split(|byte| *byte == 0).next()).map(String::from_utf8_lossy);
+    let gamma = of(b"gAMA").and_then(|data| Some(u32::from_be_bytes(data.get(..4)?.try_into().ok()?)));
+    // In the order in which a reader of PNG heeds them.
+    let colours = match (of(b"cICP"), profile, gamma) {
+        (Some([1, 13, 0, 1]), ..) => None,
+        (Some(_), ..) => Some("its cICP".to_owned()),
+        (None, Some(name), _) => (!name.contains("sRGB")).then(|| format!("the profile {name:?}")),
+        (None, None, Some(gamma)) if of(b"sRGB").is_none() && gamma.abs_diff(45_455) > 500 => {
+            Some(format!("a gamma of {:.2}", 1e5 / f64::from(gamma.max(1))))
+        }
+        _ => foreign_profile(bytes).then(|| "a profile other than sRGB".to_owned()),
+    };
+    if let Some(colours) = colours {
+        asked.push(format!("has colours by {colours}, and is shown as sRGB: convert it to sRGB"));
+    }
+    asked
+}
+
+/// The chunks of a PNG before its pixels, by name; none of anything else.
+fn chunks(bytes: &[u8]) -> Vec<([u8; 4], &[u8])> {
+    let mut rest = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n").unwrap_or_default();
+    let mut found = Vec::new();
+    while let Some((head, behind)) = rest.split_first_chunk::<8>() {
+        let [a, b, c, d, name @ ..] = *head;
+        let length = u32::from_be_bytes([a, b, c, d]) as usize;
+        let (Some(data), false) = (behind.get(..length), name == *b"IDAT") else { break };
+        found.push((name, data));
+        rest = behind.get(length + 4..).unwrap_or_default();
+    }
+    found
+}
+
+/// Whether a JPEG has a colour profile that does not call itself sRGB, in ASCII or as UTF-16 (ICC.1, the description).
+fn foreign_profile(bytes: &[u8]) -> bool {
+    const NAME: &[u8] = b"ICC_PROFILE\0";
+    let mut at = if bytes.starts_with(&[0xff, 0xd8]) { 2 } else { return false };
+    // The profile's parts stand before the picture, whose scan begins with 0xda.
+    let mut profile = None;
+    while let Some(&[0xff, marker, high, low]) = bytes.get(at..at + 4)
+        && marker != 0xda
+    {
+        let end = at + 2 + usize::from(u16::from_be_bytes([high, low])).max(2);
+        let part = bytes.get(at + 4..end).unwrap_or_default();
+        if marker == 0xe2 && part.starts_with(NAME) {
+            profile.get_or_insert_with(Vec::new).extend_from_slice(part);
+        }
+        at = end;
+    }
+    let says = |profile: &[u8], name: &[u8]| profile.windows(name.len()).any(|part| part == name);
+    profile.is_some_and(|profile| !says(&profile, b"sRGB") && !says(&profile, b"s\0R\0G\0B"))
+}
+
 fn png(bytes: &[u8]) -> Option<[u32; 2]> {
     let rest = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n")?;
     let number = |at: usize| Some(u32::from_be_bytes(rest.get(at..at + 4)?.try_into().ok()?));
@@ -92,6 +154,45 @@ mod tests {
             broken("a.jpg", head, [592, 333]),
             ["is a PNG by its content; its name ends in .jpg", rule]
         );
+    }
+
+    #[test]
+    fn what_a_file_asks_and_no_page_does_is_said() {
+        let png = |chunks: &[(&[u8; 4], &[u8])]| {
+            let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
+            for (name, data) in chunks {
+                bytes.extend((data.len() as u32).to_be_bytes());
+                bytes.extend([name.as_slice(), data, &[0; 4]].concat());
+            }
+            unheeded(&bytes)
+        };
+        let shown =
+            |colours: &str| format!("has colours by {colours}, and is shown as sRGB: convert it to sRGB");
+        assert_eq!(png(&[(b"cICP", &[9, 16, 0, 1])]), [shown("its cICP")]);
+        assert_eq!(png(&[(b"iCCP", b"Display P3\0\0x")]), [shown("the profile \"Display P3\"")]);
+        assert_eq!(png(&[(b"gAMA", &100_000u32.to_be_bytes())]), [shown("a gamma of 1.00")]);
+        assert_eq!(png(&[(b"acTL", &[0; 8])]).len(), 1);
+        let right: [&[(&[u8; 4], &[u8])]; 5] = [
+            &[],
+            &[(b"gAMA", &45_455u32.to_be_bytes())],
+            &[(b"sRGB", &[0]), (b"gAMA", &100_000u32.to_be_bytes())],
+            &[(b"iCCP", b"sRGB IEC61966-2.1\0\0x"), (b"gAMA", &100_000u32.to_be_bytes())],
+            &[(b"cICP", &[1, 13, 0, 1]), (b"iCCP", b"Display P3\0\0x")],
+        ];
+        assert!(right.iter().all(|chunks| png(chunks).is_empty()));
+        // What stands behind the pixels is text, and no reader heeds it.
+        assert_eq!(png(&[(b"IDAT", b"x"), (b"acTL", &[0; 8])]), Vec::<String>::new());
+        let jpeg = |profile: &[u8]| {
+            let part = [b"ICC_PROFILE\0\x01\x01", profile].concat();
+            let length = (part.len() as u16 + 2).to_be_bytes();
+            unheeded(&[&[0xff, 0xd8, 0xff, 0xe2], &length[..], &part, &[0xff, 0xda, 0, 2]].concat())
+        };
+        assert_eq!(jpeg(b"desc Display P3"), [shown("a profile other than sRGB")]);
+        assert_eq!(jpeg(b"desc sRGB IEC61966-2.1"), Vec::<String>::new());
+        assert_eq!(jpeg(b"mluc\0s\0R\0G\0B"), Vec::<String>::new());
+        for cut in 0..12 {
+            assert_eq!(unheeded(&b"\x89PNG\r\n\x1a\n\xff\xff\xff\xffacTL"[..cut]), Vec::<String>::new());
+        }
     }
 
     #[test]

@@ -12,10 +12,10 @@ use crate::proxies::TrustedProxies;
 use crate::{integrity, routes, starting};
 use axum::Router;
 use kelir_store::Store;
-use kelir_study::StudyDefinition;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -72,13 +72,15 @@ impl Server {
             }
         }
         for study in &studies {
-            for warning in warnings(study) {
-                tracing::warn!(target: AUDIT, study = study.id, "is served, and may have a mistake: {warning}");
-            }
             store.put_study_file(study).await?;
         }
         let links = Links::open(&config.data).map_err(StartError::LinkKey)?;
         let app = App::new(store, library, studies, broken, config, links);
+        for (id, loaded) in &app.studies {
+            for warning in &loaded.warnings {
+                tracing::warn!(target: AUDIT, study = id, "is served, and may have a mistake: {warning}");
+            }
+        }
         Ok(Server { app: Arc::new(app), password })
     }
 
@@ -140,12 +142,14 @@ impl Server {
                             version,
                             stimuli: Arc::new(stimuli),
                         }))),
+                        Err(_) if app.stopping.load(Ordering::Relaxed) => return Err(interrupted()),
                         Err(error) => failed(id, loaded, error.to_string(), &mut wrong),
                     }
                 }
-                Err(error) => {
-                    failed(id, loaded, error.to_string(), &mut wrong);
+                Err(_) if app.stopping.load(Ordering::Relaxed) => {
+                    return Err(interrupted());
                 }
+                Err(error) => failed(id, loaded, error.to_string(), &mut wrong),
             }
         }
         wrong
@@ -175,10 +179,8 @@ impl Server {
     }
 }
 
-/// What may be a mistake in a study's file.
-pub(crate) fn warnings(study: &StudyDefinition) -> Vec<String> {
-    let warnings = study.warnings(&format!("studies/{}.toml", study.id));
-    warnings.iter().map(ToString::to_string).collect()
+fn interrupted() -> String {
+    "making the stimuli was interrupted".to_owned()
 }
 
 /// Notes that a study cannot be taken, and why.
@@ -217,12 +219,13 @@ impl Handle {
         let mut ready = self.ready.clone();
         match ready.wait_for(Option::is_some).await {
             Ok(outcome) => outcome.clone().unwrap_or(Ok(())),
-            Err(_) => Err("making the stimuli was interrupted".to_owned()),
+            Err(_) => Err(interrupted()),
         }
     }
 
     /// Finishes the requests under way, for at most ten seconds, and closes the database.
     pub async fn shutdown(mut self) {
+        self.server.app.stopping.store(true, Ordering::Relaxed);
         self.maker.abort();
         self.stop.send_replace(true);
         if tokio::time::timeout(GRACE, &mut self.serving).await.is_err() {

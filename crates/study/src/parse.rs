@@ -16,8 +16,8 @@ use crate::visits::Flag;
 use std::collections::BTreeSet;
 use toml::{Table, Value};
 
-pub(crate) const TITLE: &str = "a text of 1 to 200 characters";
-pub(crate) const QUESTION: &str = "a text of 1 to 300 characters";
+pub(crate) const TITLE: &str = "a text of 1 to 200 characters, none of them a control character";
+pub(crate) const QUESTION: &str = "a text of 1 to 300 characters, none of them a control character";
 
 impl StudyDefinition {
     /// Reads a study file. `file` names it in messages; its stem is the study's id.
@@ -207,7 +207,7 @@ fn read_blocks(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Vec<Block> {
     let mut blocks = Vec::new();
     for mut fields in fields.tables("blocks") {
         let id = read_id(&mut fields, &mut block_ids);
-        let title = fields.need("title", "a text of 1 to 200 characters", |v| text(v, 200));
+        let title = fields.need("title", TITLE, |v| text(v, 200));
         let kind = fields.need("kind", "\"still\" or \"animation\"", |v| match v.as_str()? {
             "still" => Some(Kind::Still),
             "animation" => Some(Kind::Animation),

@@ -229,11 +229,12 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
         let study = found.and_then(|(library, path)| {
             let study = library.rehearsed(&path)?;
             let weights = library.weights(&path, &study);
-            Ok((study, weights))
+            let warnings = library.warnings(&path, &study);
+            Ok((study, weights, warnings))
         });
         match study {
-            Ok((_, Err(error))) => checked.unreadable(file, error),
-            Ok((study, Ok(weights))) => {
+            Ok((_, Err(error), _)) => checked.unreadable(file, error),
+            Ok((study, Ok(weights), mut warnings)) => {
                 let adaptive = study.blocks.iter().any(|b| b.adaptive.is_some());
                 let (blocks, trials) = (study.blocks.len(), study.most_trials());
                 let most = if adaptive { "at most " } else { "" };
@@ -243,7 +244,8 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
                 let details = format!("blocks: {blocks}, trials: {most}{trials}");
                 let name = file.display().to_string();
                 let totals = totals(&weights, study.sizes());
-                let warnings = [study.warnings(&name), heavy(&name, &totals)].concat();
+                warnings.iter_mut().for_each(|warning| warning.file.clone_from(&name));
+                warnings.extend(heavy(&name, &totals));
                 checked.good(file, &details, about, &warnings)?;
                 if !json {
                     print(&weights_text(&weights, &totals))?;

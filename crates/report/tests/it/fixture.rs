@@ -131,7 +131,9 @@ pub fn hostile() -> Study {
 
 impl Study {
     pub fn report(&self) -> StudyReport {
-        let quoted = |text: &str| serde_json::to_string(text).unwrap();
+        // What the file itself may not hold comes from elsewhere: the report relies on no reader.
+        let plain = |text: &str| text.replace(char::is_control, "");
+        let quoted = |text: &str| serde_json::to_string(&plain(text)).unwrap();
         let photo =
             if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
         let toml = format!(
@@ -144,7 +146,12 @@ impl Study {
             self.screening,
             self.blocks.replace("TITLE", &quoted(&self.block_title))
         );
-        let design = StudyDefinition::parse("studies/shadows.toml", &toml).unwrap_or_else(|e| panic!("{e}"));
+        let mut design =
+            StudyDefinition::parse("studies/shadows.toml", &toml).unwrap_or_else(|e| panic!("{e}"));
+        (design.title, design.question) = (self.title.clone(), self.question.clone());
+        for block in design.blocks.iter_mut().filter(|block| block.title == plain(&self.block_title)) {
+            block.title.clone_from(&self.block_title);
+        }
         judge(design, &self.people)
     }
 }

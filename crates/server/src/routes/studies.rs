@@ -124,7 +124,7 @@ async fn summary(app: &App, loaded: &LoadedStudy) -> Result<StudySummary, StoreE
         status,
         progress,
         reason,
-        warnings: crate::server::warnings(study),
+        warnings: loaded.warnings.clone(),
         most_trials: study.most_trials(),
     })
 }

@@ -37,8 +37,10 @@ pub(super) fn read(
         "falling" => Some(Direction::Falling),
         _ => None,
     });
-    let label = fields.need("label", "a text of 1 to 80 characters", |v| text(v, 80));
-    let unit = fields.get("unit", "a text of 1 to 20 characters", |v| text(v, 20));
+    let label = fields
+        .need("label", "a text of 1 to 80 characters, none of them a control character", |v| text(v, 80));
+    let unit =
+        fields.get("unit", "a text of 1 to 20 characters, none of them a control character", |v| text(v, 20));
     let lapse = fields
         .get("lapse", "\"prior\" or a rate from 0 to 0.4", |v| match v.as_str() {
             Some("prior") => Some(Lapse::Prior),
