@@ -8,6 +8,7 @@ export class Line {
   rate: number;
   /** Bytes that have gone out. */
   sent = 0;
+  #after: { bytes: number; run: () => void } | null = null;
   readonly #sending = new Map<ServerResponse, Buffer>();
   readonly #timer: NodeJS.Timeout;
 
@@ -26,6 +27,11 @@ export class Line {
     response.once("close", () => this.#sending.delete(response));
     response.flushHeaders();
     this.#sending.set(response, data);
+  }
+
+  /** Does something once so many bytes have gone out. */
+  after(bytes: number, run: () => void): void {
+    this.#after = { bytes, run };
   }
 
   /** Sends no more of what is on its way now. */
@@ -49,5 +55,8 @@ export class Line {
       this.#sending.delete(response);
       response.end();
     }
+    if (this.#after === null || this.sent < this.#after.bytes) return;
+    this.#after.run();
+    this.#after = null;
   }
 }

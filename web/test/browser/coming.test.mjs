@@ -12,6 +12,8 @@ import { begin, bundle, rows, stored, visit } from "./visit.mjs";
 
 const MBIT = 1e6 / 8;
 const FPS = 30;
+/** Bytes after which the pair has begun at 9 Mbit/s, and is not all here. */
+const BEGUN = 2.7e6;
 
 /** A pair as long as the built-in one; frame i of the first film has the code 4i. */
 function pair(kind = "two-alternative", roles = ["left", "right"], settings = null) {
@@ -53,12 +55,13 @@ async function over(t, rate, { stuff = pair(), spoil = "", ranges = true, sends 
   const drawn = (frames) => v.page.waitForFunction((frames) => globalThis.seen.codes.length >= frames, frames, { timeout: 60_000 });
   /** Resolves when it has drawn nothing for half a second, with how many frames it drew before. */
   const stands = async () => {
-    for (let before = -1; ; ) {
+    for (let before = -1, tries = 0; tries < 60; tries++) {
       const { codes } = await seen();
       if (codes.length === before) return before;
       before = codes.length;
       await v.page.waitForTimeout(500);
     }
+    throw new Error("it goes on and on");
   };
   return { ...v, line, asked, seen, drawn, stands };
 }
@@ -87,8 +90,8 @@ for (const [mbits, least, most] of [[9, 2.1e6, 2.5e6], [1.6, 3.6e6, 4e6]]) {
 
 test("a line that stalls amid a film: the last frame stays, the answer waits until all is here, and the trial says what it missed", async (t) => {
   const v = await over(t, 9 * MBIT);
+  v.line.after(BEGUN, () => (v.line.rate = 0));
   await begin(v, "1");
-  v.line.rate = 0;
   const stands = await v.stands();
   assert.ok(stands > 10 && stands < PICTURES.length, `${stands} frames`);
   await v.hook("choice-left").click();
@@ -103,8 +106,8 @@ test("a line that stalls amid a film: the last frame stays, the answer waits unt
 
 test("after a stall a film goes on at its time", async (t) => {
   const v = await over(t, 9 * MBIT);
+  v.line.after(BEGUN, () => (v.line.rate = 0));
   await begin(v, "1");
-  v.line.rate = 0;
   const stands = await v.stands();
   v.line.rate = 9 * MBIT;
   await v.drawn(stands + 60);
@@ -120,8 +123,8 @@ test("after a stall a film goes on at its time", async (t) => {
 for (const ranges of [true, false]) {
   test(`a request that is given up amid a film is made again ${ranges ? "from where it was" : "from the beginning, where the server can't do otherwise"}, and no wrong frame is shown`, async (t) => {
     const v = await over(t, 9 * MBIT, { spoil: HURRY, ranges });
+    v.line.after(BEGUN, () => v.line.hold());
     await begin(v, "1");
-    v.line.hold();
     for (let tries = 0; v.asked.length < 4 && tries < 200; tries++) await v.page.waitForTimeout(50);
     await v.drawn(150);
     await v.hook("choice-left").click();
@@ -142,8 +145,10 @@ const again = /A picture came damaged, so these pictures are here once more/;
 
 test("an answer to pictures whose last byte turns out wrong is not sent: they are shown once more, and answered", async (t) => {
   const v = await over(t, 9 * MBIT, { sends: wrongOnce((data) => data.fill(1, data.length - 1)) });
+  v.line.after(BEGUN, () => (v.line.rate = 0));
   await begin(v, "1");
   await v.hook("choice-left").click();
+  v.line.rate = 9 * MBIT;
   await v.page.getByText(again).waitFor();
   await v.hook("choice-right").waitFor();
   await v.page.locator(".pair.shown").waitFor();
