@@ -65,7 +65,7 @@ for (const dpr of [1, 2]) {
   test(`each step shows exactly its pixels at ${dpr} device pixels to a CSS pixel`, async (t) => {
     const chromium = await launch([`--force-device-scale-factor=${dpr}`, "--window-size=1280,800"]);
     t.after(() => chromium.close());
-    const settings = { fixation_ms: 1500, first_ms: 1500, mask_ms: 1500, second_ms: 1500 };
+    const settings = { fixation_ms: 2500, first_ms: 2500, mask_ms: 2500, second_ms: 2500 };
     const v = await visit(t, { chromium, options: { viewport: null }, stuff: intervals({ stills: 1, settings }) });
     await begin(v, "1");
     const canvas = v.page.locator("canvas");
@@ -76,26 +76,29 @@ for (const dpr of [1, 2]) {
     const bytes = (role) => pixels(v.mock.stuff.bytes.get(shown[role].sha256).pictures[0]);
     const grey = { width: 592, height: 333, at: () => [124, 124, 124] };
 
-    const fixation = await screenOf(v);
-    const ink = differing(fixation, grey, ...at);
-    assert.ok(ink > 50 && ink < 1000, `a small cross: ${ink} pixels`);
-    for (const role of ["first", "second"]) {
-      await spoken.getByText(role === "first" ? "First image" : "Second image").waitFor({ state: "attached" });
-      const screen = await screenOf(v);
-      assert.equal(differing(screen, bytes(role), ...at), 0, role);
-      assert.ok(differing(screen, bytes(role), ...at, 1) > 1000, "one pixel off would be seen");
-      assert.ok(differing(screen, bytes(role === "first" ? "second" : "first"), ...at) > 1000, "the other picture would be seen");
-      if (role === "second") continue;
-      await spoken.getByText("First image").waitFor({ state: "detached" });
-      const rgba = mask({ width: 592, height: 333, surround: study.surround, seed: seedOf([shown.first.sha256, shown.second.sha256], trial_index) });
-      const blocks = { width: 592, height: 333, at: (x, y) => [...rgba.subarray(4 * (592 * y + x), 4 * (592 * y + x) + 3)] };
-      assert.equal(differing(await screenOf(v), blocks, ...at), 0, "mask");
-    }
+    // All are taken before any is compared, which takes a busy machine longer than a step.
+    const seen = { fixation: await screenOf(v) };
+    await spoken.getByText("First image").waitFor({ state: "attached" });
+    seen.first = await screenOf(v);
+    await spoken.getByText("First image").waitFor({ state: "detached" });
+    seen.mask = await screenOf(v);
+    await spoken.getByText("Second image").waitFor({ state: "attached" });
+    seen.second = await screenOf(v);
     await answering(v);
     const buttons = await Promise.all(["first", "second"].map((role) => v.hook(`choice-${role}`).boundingBox()));
     const response = await screenOf(v);
     const outside = { ...grey, at: (x, y) => (buttons.some((b) => y + at[1] >= b.y * dpr - 2 && y + at[1] <= (b.y + b.height) * dpr + 2) ? response.at(at[0] + x, at[1] + y) : [124, 124, 124]) };
     assert.equal(differing(response, outside, ...at), 0, "nothing is left of the pictures");
+    const ink = differing(seen.fixation, grey, ...at);
+    assert.ok(ink > 50 && ink < 1000, `a small cross: ${ink} pixels`);
+    for (const [role, other] of [["first", "second"], ["second", "first"]]) {
+      assert.equal(differing(seen[role], bytes(role), ...at), 0, role);
+      assert.ok(differing(seen[role], bytes(role), ...at, 1) > 1000, "one pixel off would be seen");
+      assert.ok(differing(seen[role], bytes(other), ...at) > 1000, "the other picture would be seen");
+    }
+    const rgba = mask({ width: 592, height: 333, surround: study.surround, seed: seedOf([shown.first.sha256, shown.second.sha256], trial_index) });
+    const blocks = { width: 592, height: 333, at: (x, y) => [...rgba.subarray(4 * (592 * y + x), 4 * (592 * y + x) + 3)] };
+    assert.equal(differing(seen.mask, blocks, ...at), 0, "mask");
     await v.hook("choice-first").click();
     await v.hook("completion-code").waitFor();
   });
