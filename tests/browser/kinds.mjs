@@ -52,11 +52,11 @@ async function take({ name, study, viewport, dpr = 1, input, choices, targets, r
       return { name, code, trials, log, early, said, complaints };
     }
     if (!id.startsWith("choice-")) {
-      // A second click of a double one is none: it is pressed until the page goes on.
-      for (let gone = false; !gone; ) {
-        await press(page, input, hook);
-        gone = await page.getByTestId(id).waitFor({ state: "detached", timeout: 1000 }).then(() => true, () => false);
-      }
+      // A second click of a double one is none: this button, and what follows it never, is pressed until the page goes on.
+      const button = page.getByTestId(id);
+      const gone = () => button.waitFor({ state: "detached", timeout: 1000 }).then(() => true, () => false);
+      do await press(page, input, button, { timeout: 1000 }).catch(() => {});
+      while (!(await gone()));
       continue;
     }
     const index = trials.length;
@@ -140,13 +140,13 @@ async function choose(page, input, role, index) {
 }
 
 /** Presses a button. */
-async function press(page, input, button) {
-  if (input === "keyboard") return button.press("Enter");
-  if (input === "touch") return button.tap();
-  if (input === "mouse") return button.click();
+async function press(page, input, button, patience = {}) {
+  if (input === "keyboard") return button.press("Enter", patience);
+  if (input === "touch") return button.tap(patience);
+  if (input === "mouse") return button.click(patience);
   // A pen: what its driver would tell Chromium.
-  await button.scrollIntoViewIfNeeded();
-  const box = await button.boundingBox();
+  await button.scrollIntoViewIfNeeded(patience);
+  const box = await button.boundingBox(patience);
   const session = await page.context().newCDPSession(page);
   const at = { x: box.x + box.width / 2, y: box.y + box.height / 2, button: "left", clickCount: 1, pointerType: "pen" };
   for (const type of ["mousePressed", "mouseReleased"]) await session.send("Input.dispatchMouseEvent", { type, ...at });

@@ -135,7 +135,7 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
     };
     let blocks = [
         block("brief", &intervals(&["a", "b"], BRIEF)),
-        block("slow", &intervals(&["c"], [1000.0; 4])),
+        block("slow", &intervals(&["c"], [2500.0; 4])),
         block("sides", &items(&["d", "e"])),
     ];
     std::fs::write(data.path().join("studies/kinds.toml"), study("[320, 180]", &blocks.concat())).unwrap();
