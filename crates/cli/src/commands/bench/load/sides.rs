@@ -13,44 +13,31 @@ use super::client::{Connection, request};
 /// Items of the study, and so answers of a session.
 pub const ITEMS: usize = 5;
 
-const STUDY: &str = r#"
-title = "Load"
-question = "Which?"
-seed = 3
-size = [32, 18]
-estimated_minutes = 1
-texts = { welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }
-conditions = { pa = { technique = "pa" }, mc = { technique = "mc" } }
-[[blocks]]
-id = "stills"
-title = "Stills"
-kind = "still"
-conditions = ["pa", "mc"]
-target = "pa"
-"#;
-
 /// Behind the small study, in the order in which their pictures are made.
 const SLOW_FILE: &str = "studies/slow.toml";
 
-/// A study whose first picture takes hours.
-const SLOW: &str = r#"
-title = "Slow"
+/// A study of so many items, shown with `pa` and with `mc`, which has these settings besides.
+fn study(items: usize, [width, height]: [u32; 2], mc: &str) -> String {
+    let item = |i| format!("[[blocks.items]]\nid = \"still-{i}\"\nscene = \"../scenes/load.toml\"\n");
+    let items: String = (0..items).map(item).collect();
+    format!(
+        r#"
+title = "Load"
 question = "Which?"
 seed = 3
-size = [1920, 1080]
+size = [{width}, {height}]
 estimated_minutes = 1
-texts = { welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }
-conditions = { mc = { technique = "mc", spp = 1048576 }, pa = { technique = "pa" } }
+texts = {{ welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }}
+conditions = {{ pa = {{ technique = "pa" }}, mc = {{ technique = "mc"{mc} }} }}
 [[blocks]]
 id = "stills"
 title = "Stills"
 kind = "still"
 conditions = ["mc", "pa"]
 target = "pa"
-[[blocks.items]]
-id = "still"
-scene = "../scenes/load.toml"
-"#;
+{items}"#
+    )
+}
 
 const SCENE: &str = r#"
 [screen]
@@ -109,7 +96,8 @@ pub fn kelir() -> Result<Side> {
 /// The same while it draws the pictures of another study, which it does for longer than anybody measures.
 pub async fn kelir_drawing() -> Result<Side> {
     let folder = tempfile::tempdir()?;
-    write(folder.path(), SLOW_FILE, SLOW)?;
+    // Its first picture takes hours.
+    write(folder.path(), SLOW_FILE, &study(1, [1920, 1080], ", spp = 1048576"))?;
     let side = served("kelir while it draws", folder, "http://")?;
     let start = request("POST", "/api/v1/studies/shadow-puppets/sessions", "", "{}");
     for _ in 0..300 {
@@ -132,9 +120,7 @@ impl Side {
 
 /// A small study in place of the built-in one, served from a folder that may hold others.
 fn served(name: &'static str, folder: TempDir, ready: &str) -> Result<Side> {
-    let item = |i| format!("[[blocks.items]]\nid = \"still-{i}\"\nscene = \"../scenes/load.toml\"\n");
-    let study: String = (0..ITEMS).map(item).collect();
-    write(folder.path(), "studies/shadow-puppets.toml", &format!("{STUDY}{study}"))?;
+    write(folder.path(), "studies/shadow-puppets.toml", &study(ITEMS, [32, 18], ""))?;
     write(folder.path(), "scenes/load.toml", SCENE)?;
     write(folder.path(), "puppets/square.svg", SQUARE)?;
     let mut command = Command::new(std::env::current_exe()?);
