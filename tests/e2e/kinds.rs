@@ -126,6 +126,8 @@ fn durations(row: &BTreeMap<String, String>, asked: [f64; 4]) -> (Vec<f64>, Vec<
 #[test]
 fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
     const BRIEF: [f64; 4] = [200.0, 150.0, 100.0, 150.0];
+    // Long enough for a screenshot of each on a busy machine.
+    const SLOW: [f64; 4] = [2500.0; 4];
     let data = small_data();
     let intervals = |ids: &[&str], [fixation, first, mask, second]: [f64; 4]| {
         format!(
@@ -135,7 +137,7 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
     };
     let blocks = [
         block("brief", &intervals(&["a", "b"], BRIEF)),
-        block("slow", &intervals(&["c"], [2500.0; 4])),
+        block("slow", &intervals(&["c"], SLOW)),
         block("sides", &items(&["d", "e"])),
     ];
     std::fs::write(data.path().join("studies/kinds.toml"), study("[320, 180]", &blocks.concat())).unwrap();
@@ -193,7 +195,7 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
             }
             let asked = match index {
                 0 | 1 => BRIEF,
-                2 => [1000.0; 4],
+                2 => SLOW,
                 _ => {
                     for step in STEPS {
                         assert_eq!(cell(&format!("requested_ms_{step}")), "", "a trial of another kind");
