@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
 
+use proptest::prelude::*;
 use serde_json::json;
 
 use super::*;
@@ -112,4 +113,47 @@ fn whole_numbers_are_exact_whatever_their_size() {
     assert_eq!(text("-9007199254740993"), r#""-9007199254740993""#);
     assert_eq!(canonical(json!(u64::MAX)).unwrap(), r#""18446744073709551615""#);
     assert_eq!(text("1e300"), "1e+300");
+}
+
+/// Any JSON: names and texts of all of Unicode, whole numbers and others, a few levels deep.
+fn any_json() -> impl Strategy<Value = Value> {
+    let name = prop_oneof![3 => "[a-z_]{1,6}", 1 => any::<String>()];
+    let leaf = prop_oneof![
+        Just(Value::Null),
+        any::<bool>().prop_map(Value::from),
+        any::<i64>().prop_map(Value::from),
+        (-1_000i64..1_000).prop_map(Value::from),
+        any::<String>().prop_map(Value::from),
+        proptest::num::f64::NORMAL.prop_map(Value::from),
+    ];
+    leaf.prop_recursive(3, 24, 4, move |inner| {
+        prop_oneof![
+            proptest::collection::vec(inner.clone(), 0..4).prop_map(Value::from),
+            proptest::collection::btree_map(name.clone(), inner, 0..4)
+                .prop_map(|members| Value::Object(members.into_iter().collect())),
+        ]
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2_000, ..ProptestConfig::default() })]
+
+    /// The short way and the canonicalizer write the same bytes, and every control character is among what they write.
+    #[test]
+    fn the_short_way_writes_what_the_canonicalizer_writes(mut value in any_json()) {
+        let text = canonical(value.clone()).unwrap();
+        quote(&mut value);
+        prop_assert_eq!(text, serde_json_canonicalizer::to_string(&value).unwrap());
+    }
+}
+
+#[test]
+fn the_short_way_is_taken_where_it_is_right_and_there_alone() {
+    let every: String = (0..=0x2000).filter_map(char::from_u32).collect();
+    let plain = json!({ "a": [every, -7, null, true], "b": {} });
+    assert!(is_canonical(&plain));
+    assert_eq!(canonical(plain.clone()).unwrap(), serde_json_canonicalizer::to_string(&plain).unwrap());
+    for other in [json!(0.5), json!([{ "\u{e9}": 1 }]), json!({ "a": { "\u{ffff}": 1, "\u{1f600}": 2 } })] {
+        assert!(!is_canonical(&other), "{other}");
+    }
 }

@@ -47,7 +47,7 @@ impl Store {
         let options = SqliteConnectOptions::new().filename(&path).busy_timeout(BUSY).read_only(true);
         let reader = SqlitePoolOptions::new().max_connections(4).connect_with(options).await?;
         let readers = Readers::new(path.clone());
-        let writer = Writer::start(move || connect(&path))?;
+        let writer = Writer::start(place.clone(), move || connect(&path))?;
         Ok(Store { writer, place, readers, reader, files, folder: folder.to_owned() })
     }
 
@@ -69,10 +69,7 @@ impl Store {
         &self,
         job: impl FnOnce(&Connection) -> Result<T, Refused<E>> + Send + 'static,
     ) -> Result<T, E> {
-        self.place.holds()?;
-        let done = self.writer.run(job).await?;
-        self.place.holds_what_was_written()?;
-        Ok(done)
+        self.writer.run(job).await
     }
 
     /// The writer's `synchronous` (2 is FULL) and `foreign_keys` (1 is on).
@@ -108,9 +105,7 @@ fn connect(path: &Path) -> Result<Connection, StoreError> {
     connection.pragma_update(None, "foreign_keys", true)?;
     connection.pragma_update(None, "recursive_triggers", true)?;
     // What answers touch stays in memory (in KiB), and a page that many of them touch is copied out of the log once for all (in pages).
-    connection.pragma_update(None, "cache_size", -65_536)?;
-    // What a savepoint would undo stays there too: as a file it took more writes than the log.
-    connection.pragma_update(None, "temp_store", "memory")?;
+    connection.pragma_update(None, "cache_size", -16_384)?;
     connection.pragma_update(None, "wal_autocheckpoint", 4_000)?;
     // More statements than the store has.
     connection.set_prepared_statement_cache_capacity(128);

@@ -4,6 +4,7 @@
 //! disk fails, nobody knows what state the connection is in: the whole group is refused, and the next one gets a connection opened anew.
 
 use crate::error::{StoreError, Trouble};
+use crate::place::Place;
 use rusqlite::Connection;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -38,13 +39,14 @@ enum Message {
 }
 
 impl Writer {
-    /// Starts the thread; `open` opens its connection, again after each failure.
+    /// Starts the thread; `open` opens its connection to the database at `place`, again after each failure.
     pub(crate) fn start(
+        place: Place,
         open: impl Fn() -> Result<Connection, StoreError> + Send + 'static,
     ) -> Result<Writer, StoreError> {
         let (queue, messages) = channel();
         let thread = std::thread::Builder::new().name("kelir-writer".to_owned());
-        let started = thread.spawn(move || work(&messages, &open));
+        let started = thread.spawn(move || work(&messages, &place, &open));
         started.map_err(|error| StoreError::trouble(Trouble::Failing, error))?;
         Ok(Writer { queue })
     }
@@ -125,15 +127,16 @@ where
     }
 }
 
-fn work(messages: &Receiver<Message>, open: &dyn Fn() -> Result<Connection, StoreError>) {
+fn work(messages: &Receiver<Message>, place: &Place, open: &dyn Fn() -> Result<Connection, StoreError>) {
     let mut kept = None;
     while let Ok(first) = messages.recv() {
         let (mut group, close) = gather(first, messages);
-        let opened = kept.take().map_or_else(open, Ok);
+        // A database that is gone is not opened again: that would make another in its place.
+        let opened = place.holds().and_then(|()| kept.take().map_or_else(open, Ok));
         let committed = opened.and_then(|connection| {
             commit(&connection, &mut group)?;
             kept = Some(connection);
-            Ok(())
+            place.holds_what_was_written()
         });
         for job in group {
             job.settle(committed.as_ref().copied().map_err(StoreError::told));

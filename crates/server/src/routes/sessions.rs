@@ -21,7 +21,7 @@ use kelir_store::{
     SessionKind, SizedStimuli, StimulusHashes, StoreError, Taken, sha256_hex,
 };
 use kelir_study::visits::Flag;
-use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials};
+use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials, trials};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -334,9 +334,14 @@ async fn take(
         }
         Ok(session)
     };
+    // Before the one writer's turn, where the page says which kind of trial it answers.
+    let said = value.get("trial_type").and_then(Value::as_str).and_then(trials::rules);
+    let checked = said.map(|rules| (rules.name(), rules.check(&value)));
     let check = move |trial: &kelir_study::Trial| {
         let refused = |errors| Turned::Away(Problem::fields(ProblemCode::InvalidField, errors));
-        trial.trial.rules().check(&value).map_err(refused)
+        let rules = trial.trial.rules();
+        let checked = checked.filter(|(name, _)| *name == rules.name()).map(|(_, checked)| checked);
+        checked.unwrap_or_else(|| rules.check(&value)).map_err(refused)
     };
     let next = move |session: &Session, progress: Progress| {
         let unloaded = || Turned::Unloaded(Box::new(session.clone()));
