@@ -3,11 +3,12 @@
 // OUT/participant.html, OUT/console.html    shells that name the hashed files
 // OUT/assets/*-HASH.{js,css,svg}            immutable
 // OUT/assets/licenses.txt                   notices of the packages inside the bundles
-import { build } from "esbuild";
-import { mkdir, readFile, readdir, rm, writeFile } from "node:fs/promises";
+
+import { mkdir, readdir, readFile, rm, writeFile } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
+import { build } from "esbuild";
 
 const root = dirname(fileURLToPath(import.meta.url));
 const out = resolve(process.argv[2] ?? process.env.KELIR_WEB_OUT ?? join(root, "node_modules/.kelir/dist"));
@@ -43,7 +44,9 @@ const early = Object.fromEntries(
     catalogues.map(async (name) => {
       const text = await readFile(join(root, "participant/words", name), "utf8");
       const message = (id) => text.match(new RegExp(`^${id} = (.*)$`, "m"))[1];
-      const browsers = Object.entries(oldest).map((browser) => browser.join(" ")).join(", ");
+      const browsers = Object.entries(oldest)
+        .map((browser) => browser.join(" "))
+        .join(", ");
       const said = ["reload", "not-loaded", "too-old", "no-script"].map((id) => [id, message(id).replace("{ $browsers }", browsers)]);
       return [name.replace(".ftl", ""), Object.fromEntries(said)];
     }),
@@ -77,11 +80,9 @@ const written = (entry) => {
 const icon = written("shared/icon.svg").file;
 for (const page of pages) {
   const { file, css } = written(`${page}/main.ts`);
-  const head = [
-    `<link rel="icon" type="image/svg+xml" href="/assets/${icon}">`,
-    `<link rel="stylesheet" href="/assets/${css}">`,
-    `<script type="module" src="/assets/${file}"></script>`,
-  ].join("\n    ");
+  const head = [`<link rel="icon" type="image/svg+xml" href="/assets/${icon}">`, `<link rel="stylesheet" href="/assets/${css}">`, `<script type="module" src="/assets/${file}"></script>`].join(
+    "\n    ",
+  );
   const shell = await readFile(join(root, page, "index.html"), "utf8");
   if (!shell.includes("<!-- assets -->")) throw new Error(`${page}/index.html has no <!-- assets --> line`);
   const first = page === "participant" ? `<script src="/assets/${basename(Object.keys(boot.metafile.outputs)[0])}"></script>\n    ` : "";
@@ -91,9 +92,7 @@ for (const page of pages) {
 }
 
 // The notices of every package that has code in a bundle.
-const packages = new Set(
-  Object.keys(metafile.inputs).flatMap((input) => input.match(/^node_modules\/((?:@[^/]+\/)?[^/]+)/)?.[1] ?? []),
-);
+const packages = new Set(Object.keys(metafile.inputs).flatMap((input) => input.match(/^node_modules\/((?:@[^/]+\/)?[^/]+)/)?.[1] ?? []));
 let notices = "";
 for (const name of [...packages].sort()) {
   const folder = join(root, "node_modules", name);

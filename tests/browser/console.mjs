@@ -13,7 +13,10 @@ try {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   page.on("pageerror", (error) => complaints.push(String(error)));
   const shot = async (label) => {
-    for (const [width, height] of [[1280, 800], [390, 844]]) {
+    for (const [width, height] of [
+      [1280, 800],
+      [390, 844],
+    ]) {
       await page.setViewportSize({ width, height });
       await page.screenshot({ path: join(task.shots, `console-${label}-${width}x${height}.png`), fullPage: true });
     }
@@ -30,7 +33,10 @@ try {
   await page.getByTestId("login-submit").click();
   await page.getByTestId("login-password").waitFor({ state: "detached" });
   await page.goto(`${task.base}/console/studies`);
-  await page.getByRole("link", { name: /puppets|screen/i }).first().waitFor();
+  await page
+    .getByRole("link", { name: /puppets|screen/i })
+    .first()
+    .waitFor();
   await shot("studies");
   await page.goto(`${task.base}/console/studies/${task.study}`);
   const rows = page.locator('[data-testid^="block-"]');

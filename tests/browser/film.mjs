@@ -16,8 +16,7 @@ try {
       if (type === "video/mp4") {
         await new Promise((done, failed) => {
           // A frame counts once it is there to be drawn: a seek can end before it is decoded, and the film's first frame comes before any seek.
-          const drawn = (_, { mediaTime }) =>
-            Math.abs(mediaTime - task.at_s) < 0.1 ? done() : film.requestVideoFrameCallback(drawn);
+          const drawn = (_, { mediaTime }) => (Math.abs(mediaTime - task.at_s) < 0.1 ? done() : film.requestVideoFrameCallback(drawn));
           film.requestVideoFrameCallback(drawn);
           film.onerror = () => failed(new Error(film.error?.message ?? "the film does not play"));
           film.onloadedmetadata = () => (film.currentTime = task.at_s);

@@ -43,7 +43,9 @@ async function take({ name, study, viewport, dpr = 1, input, choices, targets, r
   let said = null;
   for (;;) {
     if (trials.length === shoot && trials.length > 0) await steps(page, shot);
-    const hook = page.locator(`:is([data-testid="consent-agree"], [data-testid="start"], [data-testid="completion-code"], .trial:not([data-done]) [data-testid^="choice-"]):visible:not([aria-disabled])`).first();
+    const hook = page
+      .locator(`:is([data-testid="consent-agree"], [data-testid="start"], [data-testid="completion-code"], .trial:not([data-done]) [data-testid^="choice-"]):visible:not([aria-disabled])`)
+      .first();
     await hook.waitFor({ timeout: 60_000 });
     const id = await hook.getAttribute("data-testid");
     if (id === "completion-code") {
@@ -54,7 +56,11 @@ async function take({ name, study, viewport, dpr = 1, input, choices, targets, r
     if (!id.startsWith("choice-")) {
       // A second click of a double one is none: this button, and what follows it never, is pressed until the page goes on.
       const button = page.getByTestId(id);
-      const gone = () => button.waitFor({ state: "detached", timeout: 1000 }).then(() => true, () => false);
+      const gone = () =>
+        button.waitFor({ state: "detached", timeout: 1000 }).then(
+          () => true,
+          () => false,
+        );
       do await press(page, input, button, { timeout: 1000 }).catch(() => {});
       while (!(await gone()));
       continue;
@@ -124,7 +130,13 @@ async function look(page) {
 async function steps(page, shot) {
   const spoken = (text) => page.waitForFunction((text) => document.querySelector(".spoken")?.textContent === text, text);
   await page.waitForFunction(() => / of /.test(document.querySelector(".position")?.textContent ?? ""));
-  for (const [step, text] of [["fixation", ""], ["first", "First image"], ["mask", ""], ["second", "Second image"], ["response", "Please choose: first or second"]]) {
+  for (const [step, text] of [
+    ["fixation", ""],
+    ["first", "First image"],
+    ["mask", ""],
+    ["second", "Second image"],
+    ["response", "Please choose: first or second"],
+  ]) {
     await spoken(text);
     await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
     await shot(`two-interval-${step}`);

@@ -22,7 +22,10 @@ try {
   const overflow = () => page.evaluate(() => Math.max(...[...document.querySelectorAll("body *")].map((e) => e.getBoundingClientRect().right)) - document.documentElement.clientWidth);
   const letters = () => page.evaluate(() => Math.min(...[...document.querySelectorAll("figure svg")].map((svg) => 13 * (svg.getBoundingClientRect().width / svg.viewBox.baseVal.width))));
   const pages = [];
-  for (const [width, height] of [[1280, 800], [390, 844]]) {
+  for (const [width, height] of [
+    [1280, 800],
+    [390, 844],
+  ]) {
     await page.setViewportSize({ width, height });
     pages.push({ width, overflow: await overflow(), letters: await letters() });
     await page.screenshot({ path: join(task.shots, `report-${width}x${height}.png`), fullPage: true });

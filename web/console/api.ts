@@ -42,7 +42,19 @@ export interface Selection {
   pooled: readonly string[];
 }
 
-type Ending = "results" | "report" | "report.html" | "report.md" | "responses.csv" | "pairs.csv" | "codebook.csv" | "participants.csv" | "participants_codebook.csv" | "events.csv" | "events_codebook.csv" | "export.xlsx";
+type Ending =
+  | "results"
+  | "report"
+  | "report.html"
+  | "report.md"
+  | "responses.csv"
+  | "pairs.csv"
+  | "codebook.csv"
+  | "participants.csv"
+  | "participants_codebook.csv"
+  | "events.csv"
+  | "events_codebook.csv"
+  | "export.xlsx";
 
 /** Where something of a selection is. */
 export function addressOf({ study, version, pooled }: Selection, ending: Ending): string {

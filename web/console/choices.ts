@@ -11,7 +11,12 @@ export function choices({ blocks, scale, standing }: Pick<Results, "blocks" | "s
     h("h2", {}, "Choices"),
     h("div", { class: "plots" }, ...blocks.map((block) => blockFigure(block, standing.summary))),
     h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of choices" }, table),
-    h("p", { class: "quiet" }, "Number of choices of the target per participant, over those who answered every pair of the block. Two-tailed one-sample t-test against chance, half the pairs. ", copyButton("Copy the table", () => tableText(table), { class: "link" })),
+    h(
+      "p",
+      { class: "quiet" },
+      "Number of choices of the target per participant, over those who answered every pair of the block. Two-tailed one-sample t-test against chance, half the pairs. ",
+      copyButton("Copy the table", () => tableText(table), { class: "link" }),
+    ),
     ...(scale ? [positions(scale)] : []),
   ];
 }
@@ -27,9 +32,7 @@ function positions(scale: NonNullable<Results["scale"]>): HTMLElement {
 function blockFigure(block: Block, summary: string): HTMLElement {
   const what = `${block.conditions.join(" against ")}, ${count(block.items, "pair")} of ${block.kind === "still" ? "stills" : "animations"}, ${block.layout}`;
   const plot =
-    block.n > 0
-      ? choiceDistribution(block)
-      : h("p", { class: "empty" }, block.incomplete > 0 ? `0 of those judged answered every pair of this block, ${block.incomplete} answered some.` : summary);
+    block.n > 0 ? choiceDistribution(block) : h("p", { class: "empty" }, block.incomplete > 0 ? `0 of those judged answered every pair of this block, ${block.incomplete} answered some.` : summary);
   return h("figure", { class: "block" }, h("figcaption", {}, h("strong", {}, block.title), h("span", { class: "quiet" }, what)), plot);
 }
 

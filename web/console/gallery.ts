@@ -37,12 +37,7 @@ function card(stimulus: Stimulus, larger: readonly Stimulus[], differs: boolean)
       ...(differs ? [h("span", { class: "warning" }, "not the same in all pooled versions")] : []),
       ...errorOf(stimulus),
       ...(larger.length === 0 ? [] : [h("span", { class: "fact" }, `${stimulus.size.join(" × ")} px; also at `, ...links(larger))]),
-      h(
-        "details",
-        {},
-        h("summary", {}, "Where it came from"),
-        h("dl", {}, ...facts.flatMap(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, shown(value))])),
-      ),
+      h("details", {}, h("summary", {}, "Where it came from"), h("dl", {}, ...facts.flatMap(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, shown(value))]))),
     ),
   );
 }
@@ -56,7 +51,8 @@ function errorOf({ provenance }: Stimulus): HTMLElement[] {
   const measured = measuredError(provenance);
   const own = standardError(provenance);
   if (measured === null && own === null) return [h("span", { class: "fact" }, "error not known")];
-  if (measured === null) return [h("span", { class: "fact" }, "standard error where sampled: RMS ", number(significant(own?.rms), own?.rms), ", max ", number(significant(own?.max), own?.max), " of full scale")];
+  if (measured === null)
+    return [h("span", { class: "fact" }, "standard error where sampled: RMS ", number(significant(own?.rms), own?.rms), ", max ", number(significant(own?.max), own?.max), " of full scale")];
   const { reference, penumbra, floor } = measured;
   const { technique, ...knobs } = reference;
   const detail = Object.entries(knobs).flatMap(([name, value]) => (typeof value === "number" || typeof value === "string" ? [`${words(name)} ${value}`] : []));

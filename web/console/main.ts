@@ -77,7 +77,16 @@ function showLogin(): void {
   const field = h("input", { type: "password", id: "password", name: "password", autocomplete: "current-password", required: true, "data-testid": "login-password" });
   const problem = h("p", { class: "problem", role: "alert" });
   const submit = h("button", { class: "primary", "data-testid": "login-submit" }, "Sign in");
-  const form = h("form", { class: "login" }, h("h1", {}, "Sign in"), h("label", { for: "password" }, "Researcher's password"), field, problem, submit, h("p", { class: "quiet" }, "Whoever started this server knows it: the terminal says how to sign in."));
+  const form = h(
+    "form",
+    { class: "login" },
+    h("h1", {}, "Sign in"),
+    h("label", { for: "password" }, "Researcher's password"),
+    field,
+    problem,
+    submit,
+    h("p", { class: "quiet" }, "Whoever started this server knows it: the terminal says how to sign in."),
+  );
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     submit.disabled = true;
@@ -118,7 +127,12 @@ async function showStudies(forward: boolean): Promise<void> {
   document.title = "Studies · kelir";
   const row = (study: StudySummary) => {
     const { completed, in_progress, started } = study.participants;
-    return h("tr", {}, h("th", { scope: "row" }, link(address(study), study.title), h("span", { class: "note" }, study.id), ...[statusText(study)].map((text) => text !== null && h("span", { class: "note" }, text))), ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))));
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, link(address(study), study.title), h("span", { class: "note" }, study.id), ...[statusText(study)].map((text) => text !== null && h("span", { class: "note" }, text))),
+      ...[completed, in_progress, started].map((n) => h("td", {}, number(n.toLocaleString("en"), n))),
+    );
   };
   const table = h(
     "table",

@@ -19,7 +19,11 @@ export function drawPaper({ comparisons, printed_t }: Paper): Node[] {
     ["t", "of the counts", one(3, (c) => c.test.t)],
     ["p", "two-tailed", p((c) => c.test.p)],
     ["p after Holm", "for three tests", p((c) => c.p_holm)],
-    ["Hedges' g", "95% interval", (c) => [number(fixed(c.effect.g, 3), c.effect.g), number(` (${interval(c.effect.g_interval.low, c.effect.g_interval.high, 3)})`, `${c.effect.g_interval.low} ${c.effect.g_interval.high}`)]],
+    [
+      "Hedges' g",
+      "95% interval",
+      (c) => [number(fixed(c.effect.g, 3), c.effect.g), number(` (${interval(c.effect.g_interval.low, c.effect.g_interval.high, 3)})`, `${c.effect.g_interval.low} ${c.effect.g_interval.high}`)],
+    ],
     ["Equivalent within ±0.5 choices", "p of two one-sided tests", p((c) => c.equivalence_points.p)],
     ["Equivalent within ±0.5 SD", "p of two one-sided tests", p((c) => c.equivalence_sd.p)],
     ["Bayes factor BF₀₁", "for no effect; JZS", (c) => [number(significant(c.bayes.bf01), c.bayes.bf01)]],
@@ -27,15 +31,34 @@ export function drawPaper({ comparisons, printed_t }: Paper): Node[] {
   const table = h(
     "table",
     { class: "statistics" },
-    h("thead", {}, h("tr", {}, h("th", { scope: "col", class: "word" }, "Statistic"), ...comparisons.map((c) => h("th", { scope: "col", "data-testid": `paper-${c.id}`, "data-t": c.test.t, "data-p": c.test.p }, c.title)))),
-    h("tbody", {}, ...rows.map(([name, about, cells]) => h("tr", {}, h("th", { scope: "row" }, name, ...(about === "" ? [] : [h("span", { class: "note" }, about)])), ...comparisons.map((c) => h("td", {}, ...cells(c)))))),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("th", { scope: "col", class: "word" }, "Statistic"),
+        ...comparisons.map((c) => h("th", { scope: "col", "data-testid": `paper-${c.id}`, "data-t": c.test.t, "data-p": c.test.p }, c.title)),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      ...rows.map(([name, about, cells]) =>
+        h("tr", {}, h("th", { scope: "row" }, name, ...(about === "" ? [] : [h("span", { class: "note" }, about)])), ...comparisons.map((c) => h("td", {}, ...cells(c)))),
+      ),
+    ),
   );
   return [
     h("h2", {}, "The paper, judged again"),
     h("p", { class: "quiet" }, "Taylor & Cameron's survey, from the counts that their printed means and standard deviations imply."),
     h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "The paper's tests" }, table),
     ...comparisons.filter((c) => !c.t_as_printed).map((c) => h("p", { class: "banner" }, ...remark(c, printed_t))),
-    h("p", { class: "quiet" }, copyButton("Copy the table", () => tableText(table), { class: "link" })),
+    h(
+      "p",
+      { class: "quiet" },
+      copyButton("Copy the table", () => tableText(table), { class: "link" }),
+    ),
   ];
 }
 

@@ -1,6 +1,7 @@
 /** Small plots as SVG: each has a title and a description, and its labels stand where they belong. */
-import { fixed } from "../shared/format.ts";
+
 import { s } from "../shared/dom.ts";
+import { fixed } from "../shared/format.ts";
 import type { Block } from "./api.ts";
 
 let plots = 0;

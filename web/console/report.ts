@@ -1,9 +1,9 @@
 /** What the t-test leaves out: how large, how sure, how equivalent, and what a reader must not conclude. */
 import { h } from "../shared/dom.ts";
 import { count, fixed, interval, pValue, significant } from "../shared/format.ts";
-import { smallest } from "./gallery.ts";
 import type { BlockReport, Coefficient, Interval, Proportion, Report } from "./api.ts";
 import { copyButton, number, tableText } from "./copy.ts";
+import { smallest } from "./gallery.ts";
 import { errorPlot, points } from "./scatter.ts";
 import { niceTicks, type Strip, strips } from "./strips.ts";
 
@@ -61,7 +61,16 @@ function errors(blocks: readonly BlockReport[], report: Report, width: number): 
   if (all.length === 0) return [heading, h("p", { class: "empty" }, "No stimulus with answers has a measured error yet.")];
   return [
     heading,
-    h("figure", { class: "wide" }, errorPlot(all, width), h("figcaption", { class: "quiet" }, "Each stimulus: its error against the reference (of simulated photographs before the camera), and the share that preferred it with Wilson's 95% interval. Lines join the two of a pair, named at the target's. Dotted: chance.")),
+    h(
+      "figure",
+      { class: "wide" },
+      errorPlot(all, width),
+      h(
+        "figcaption",
+        { class: "quiet" },
+        "Each stimulus: its error against the reference (of simulated photographs before the camera), and the share that preferred it with Wilson's 95% interval. Lines join the two of a pair, named at the target's. Dotted: chance.",
+      ),
+    ),
   ];
 }
 
@@ -70,7 +79,10 @@ function statistics(report: Report): Node[] {
   const { blocks } = report;
   const everybody = report.blocks_with_excluded ?? null;
   const within = (bounds: Bounds | null | undefined, decimals: number) => (bounds ? ` (${interval(bounds.low, bounds.high, decimals)})` : "");
-  const estimate = (x: number | null | undefined, bounds: Bounds | null | undefined, decimals = 2) => [number(fixed(x, decimals), x), number(within(bounds, decimals), bounds ? `${bounds.low} ${bounds.high}` : null)];
+  const estimate = (x: number | null | undefined, bounds: Bounds | null | undefined, decimals = 2) => [
+    number(fixed(x, decimals), x),
+    number(within(bounds, decimals), bounds ? `${bounds.low} ${bounds.high}` : null),
+  ];
   const logit = (c: Coefficient | undefined) => (c === undefined ? [number("–", null)] : [...estimate(c.estimate, c), h("span", { class: "quiet" }, ", p ", number(pValue(c.p), c.p))]);
   const tost = (block: BlockReport, unit: "points" | "sd") => {
     const found = block.analysis.equivalence.find((e) => unit in e.bounds);
@@ -93,19 +105,35 @@ function statistics(report: Report): Node[] {
     [firstRole(blocks), "far from 0.5: a bias of side or order", (b) => estimate(b.first?.proportion, b.first?.wilson, 3)],
     ["Power at d = 0.2, 0.5, 0.8", "with this n", (b) => b.analysis.power.flatMap((plan, i) => [...(i > 0 ? [asNode(", ")] : []), number(fixed(plan.power, 2), plan.power)])],
     ["Found with 80% power", "true effect in SD, with this n", (b) => [number(fixed(b.analysis.detectable?.d, 2), b.analysis.detectable?.d)]],
-    ...(everybody === null ? [] : [["t, p with the excluded", "everybody's answers", (_: BlockReport, i: number) => [number(fixed(everybody[i]?.t, 3), everybody[i]?.t), ", p ", number(pValue(everybody[i]?.p), everybody[i]?.p)].map(asNode)] as [string, string, (block: BlockReport, i: number) => Node[]]]),
+    ...(everybody === null
+      ? []
+      : [
+          [
+            "t, p with the excluded",
+            "everybody's answers",
+            (_: BlockReport, i: number) => [number(fixed(everybody[i]?.t, 3), everybody[i]?.t), ", p ", number(pValue(everybody[i]?.p), everybody[i]?.p)].map(asNode),
+          ] as [string, string, (block: BlockReport, i: number) => Node[]],
+        ]),
   ];
   const hooks = (block: BlockReport) => ({ "data-testid": `report-${block.id}`, "data-p-holm": block.p_holm, "data-g": block.analysis.effect?.g, "data-bf01": block.analysis.bayes?.bf01 });
   const table = h(
     "table",
     { class: "statistics" },
     h("thead", {}, h("tr", {}, h("th", { scope: "col", class: "word" }, "Statistic"), ...blocks.map((block) => h("th", { scope: "col", ...hooks(block) }, block.title)))),
-    h("tbody", {}, ...rows.map(([name, about, cells]) => h("tr", {}, h("th", { scope: "row" }, name, h("span", { class: "note" }, about)), ...blocks.map((block, i) => h("td", {}, ...cells(block, i)))))),
+    h(
+      "tbody",
+      {},
+      ...rows.map(([name, about, cells]) => h("tr", {}, h("th", { scope: "row" }, name, h("span", { class: "note" }, about)), ...blocks.map((block, i) => h("td", {}, ...cells(block, i))))),
+    ),
   );
   return [
     h("h3", {}, "Every number"),
     h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of statistics" }, table),
-    h("p", { class: "quiet" }, copyButton("Copy the table", () => tableText(table), { class: "link" })),
+    h(
+      "p",
+      { class: "quiet" },
+      copyButton("Copy the table", () => tableText(table), { class: "link" }),
+    ),
   ];
 }
 
@@ -118,7 +146,9 @@ function firstRole(blocks: readonly BlockReport[]): string {
 const asNode = (part: Node | string): Node => (typeof part === "string" ? document.createTextNode(part) : part);
 
 function notes(blocks: readonly BlockReport[]): Node[] {
-  const items = blocks.filter((block) => block.analysis.notes.length > 0).map((block) => h("li", {}, h("strong", {}, block.title), ...block.analysis.notes.map((note) => h("span", { class: "warning" }, note))));
+  const items = blocks
+    .filter((block) => block.analysis.notes.length > 0)
+    .map((block) => h("li", {}, h("strong", {}, block.title), ...block.analysis.notes.map((note) => h("span", { class: "warning" }, note))));
   return items.length === 0 ? [] : [h("h3", {}, "Read with care"), h("ul", { class: "notes" }, ...items)];
 }
 
@@ -127,9 +157,22 @@ function scale({ scale: found, scale_note }: Report): Node[] {
   if (!found) return !scale_note ? [] : [heading, h("p", { class: "quiet" }, scale_note)];
   const rows = found.conditions.map(({ condition, jod, low, high }): Strip => ({ label: condition, value: jod, low, high, text: `${fixed(jod, 2)}, ${interval(low, high, 2)}` }));
   const reach = niceTicks(Math.max(...rows.flatMap((row) => [Math.abs(row.low ?? 0), Math.abs(row.high ?? 0)]), 0.1), 3);
-  const ticks = [...reach.slice(1).map((t) => -t).reverse(), ...reach];
+  const ticks = [
+    ...reach
+      .slice(1)
+      .map((t) => -t)
+      .reverse(),
+    ...reach,
+  ];
   const axis = { from: ticks[0] ?? -1, to: ticks.at(-1) ?? 1, mark: 0, name: "JOD", ticks: ticks.map((t): [number, string] => [t, fixed(t, Number.isInteger(t) ? 0 : 1)]) };
-  return [heading, strips(rows, axis, `Just-objectionable differences; more is chosen more often, and 1 JOD apart is chosen by 75%. Lines: ${percent(found.level)} intervals from ${count(found.replicates, "resample")} of ${count(found.observers, "participant")}. Overlap of intervals is no test.`)];
+  return [
+    heading,
+    strips(
+      rows,
+      axis,
+      `Just-objectionable differences; more is chosen more often, and 1 JOD apart is chosen by 75%. Lines: ${percent(found.level)} intervals from ${count(found.replicates, "resample")} of ${count(found.observers, "participant")}. Overlap of intervals is no test.`,
+    ),
+  ];
 }
 
 function exclusions({ excluded }: Report): Node[] {
@@ -142,10 +185,38 @@ function methods({ methods: texts, kelir_version, chain }: Report): Node[] {
   const whole = texts.join(" ");
   const judged = ` Judged by kelir ${kelir_version}.`;
   return [
-    h("details", { class: "methods" }, h("summary", {}, "Methods, as a paper's section"), ...texts.map((text) => h("p", {}, text)), h("p", {}, copyButton("Copy the text", () => whole, { class: "link" }))),
+    h(
+      "details",
+      { class: "methods" },
+      h("summary", {}, "Methods, as a paper's section"),
+      ...texts.map((text) => h("p", {}, text)),
+      h(
+        "p",
+        {},
+        copyButton("Copy the text", () => whole, { class: "link" }),
+      ),
+    ),
     ...(chain.faults.length === 0
-      ? [h("p", { class: "quiet" }, `All ${count(chain.rows, "stored answer")} are what was written, in order (chain ends in `, number(chain.head.slice(0, 12), chain.head), ").", ...blanked(chain), judged)]
-      : [h("div", { class: "banner" }, h("p", {}, "Not all stored rows are what was written. Do not use these data before you know why."), h("ul", {}, ...chain.faults.map(fault)), h("p", {}, judged))]),
+      ? [
+          h(
+            "p",
+            { class: "quiet" },
+            `All ${count(chain.rows, "stored answer")} are what was written, in order (chain ends in `,
+            number(chain.head.slice(0, 12), chain.head),
+            ").",
+            ...blanked(chain),
+            judged,
+          ),
+        ]
+      : [
+          h(
+            "div",
+            { class: "banner" },
+            h("p", {}, "Not all stored rows are what was written. Do not use these data before you know why."),
+            h("ul", {}, ...chain.faults.map(fault)),
+            h("p", {}, judged),
+          ),
+        ]),
   ];
 }
 

@@ -93,7 +93,11 @@ export function errorPlot(all: readonly Point[], width: number): SVGSVGElement {
   const dots = all.map((p) => ({ left: x(p.error) - 8, right: x(p.error) + 8, top: y(p.share) - 8, bottom: y(p.share) + 8 }));
   const whiskers = all.map((p) => ({ left: x(p.error) - 3, right: x(p.error) + 3, top: y(p.interval.high), bottom: y(p.interval.low) }));
   const room = { ...box, left: box.left + 2, bottom: box.bottom - 2 };
-  const labels = placed(named.map((p) => ({ x: x(p.error), y: y(p.share), width: 7.2 * p.item.length })), [...dots, ...whiskers], room);
+  const labels = placed(
+    named.map((p) => ({ x: x(p.error), y: y(p.share), width: 7.2 * p.item.length })),
+    [...dots, ...whiskers],
+    room,
+  );
   named.forEach((p, i) => {
     const label = labels[i];
     if (label === undefined) return;

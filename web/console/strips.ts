@@ -50,7 +50,13 @@ export function strips(rows: readonly Strip[], axis: Axis, caption: string): HTM
       h("span", { class: "strip-value" }, number(row.text, row.value)),
     ),
   );
-  return h("figure", { class: "strips" }, ...lines, h("div", { class: "strip-row axis-row" }, h("span", { class: "strip-label quiet" }, axis.name), scale, h("span", {})), h("figcaption", { class: "quiet" }, caption));
+  return h(
+    "figure",
+    { class: "strips" },
+    ...lines,
+    h("div", { class: "strip-row axis-row" }, h("span", { class: "strip-label quiet" }, axis.name), scale, h("span", {})),
+    h("figcaption", { class: "quiet" }, caption),
+  );
 }
 
 /** Ticks at 1, 2 or 5 times a power of ten, about `wanted` of them, from 0 to at least `most`. */

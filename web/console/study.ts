@@ -70,18 +70,30 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
     document.title = `${title} (${id}) · kelir`;
     const status = summary === undefined ? null : statusText(summary);
     section("head", [title, results?.version, results?.other_versions], () => head(id, title, results));
-    section("status", [status, results?.pooled, results?.different_stimuli], () => [...(status === null ? [] : [h("p", { class: "banner", role: "status" }, status)]), ...(results === null ? [] : pooledBanner(results, versions))]);
-    section("versions", versions.map(({ version, is_current }) => [version, is_current]), () => {
-      list = new VersionList(selection, versions, go);
-      return versions.length < 2 ? [] : [h("h2", {}, "Versions"), list.element];
-    });
+    section("status", [status, results?.pooled, results?.different_stimuli], () => [
+      ...(status === null ? [] : [h("p", { class: "banner", role: "status" }, status)]),
+      ...(results === null ? [] : pooledBanner(results, versions)),
+    ]);
+    section(
+      "versions",
+      versions.map(({ version, is_current }) => [version, is_current]),
+      () => {
+        list = new VersionList(selection, versions, go);
+        return versions.length < 2 ? [] : [h("h2", {}, "Versions"), list.element];
+      },
+    );
     list?.recount(versions);
     section("participants", [results?.participants, results?.standing, results?.excluded], () => participants(results));
     if (results !== null) {
       const { blocks, scale, standing, stimuli, different_stimuli, display, downloads } = results;
       section("choices", [blocks, scale, standing.summary], () => choices(results));
       judge(selection, results);
-      section("stimuli", [stimuli, different_stimuli, display, downloads], () => [h("h2", {}, "Stimuli"), h("p", { class: "quiet", "data-testid": "display" }, display), ...downloaded(downloads), ...(stimuli.length > 0 ? gallery(stimuli, different_stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")])]);
+      section("stimuli", [stimuli, different_stimuli, display, downloads], () => [
+        h("h2", {}, "Stimuli"),
+        h("p", { class: "quiet", "data-testid": "display" }, display),
+        ...downloaded(downloads),
+        ...(stimuli.length > 0 ? gallery(stimuli, different_stimuli) : [h("p", { class: "empty" }, "None are made yet. The server makes them when it starts.")]),
+      ]);
       section("data", [results.version, selection.pooled], () => data({ ...selection, version: results.version }));
     }
     updated.textContent = `Updated ${clockTime(new Date())}`;
@@ -148,7 +160,12 @@ function head(id: string, title: string, results: Results | null): Node[] {
 /** The participants' link: the one thing that moves a study on. */
 function invitation(study: string): HTMLElement {
   const address = `${location.origin}/study/${encodeURIComponent(study)}`;
-  return h("p", { class: "invitation" }, h("a", { href: address, target: "_blank", rel: "noopener" }, address), copyButton("Copy the participants' link", () => address, { class: "primary" }));
+  return h(
+    "p",
+    { class: "invitation" },
+    h("a", { href: address, target: "_blank", rel: "noopener" }, address),
+    copyButton("Copy the participants' link", () => address, { class: "primary" }),
+  );
 }
 
 /** Trying a study without spoiling it. Colleagues who do not sign in need a signed link. */
@@ -160,14 +177,30 @@ function rehearsal(study: string): HTMLElement {
       try {
         const { path, expires_at_s } = await makeLink(study, visit);
         const address = `${location.origin}${path}`;
-        made.replaceChildren(h("code", {}, address), " ", copyButton("Copy it", () => address), ` Good until ${new Date(expires_at_s * 1000).toLocaleString("en")}.`);
+        made.replaceChildren(
+          h("code", {}, address),
+          " ",
+          copyButton("Copy it", () => address),
+          ` Good until ${new Date(expires_at_s * 1000).toLocaleString("en")}.`,
+        );
       } catch {
         made.textContent = "The link could not be made. Please try again.";
       }
     };
     return h("button", { type: "button", "data-testid": `${visit}-link`, onclick: () => void make() }, label);
   };
-  return h("p", { class: "quiet rehearsal" }, "Try it: ", preview, " (nothing is stored), or make a ", link("pilot", "Pilot link"), " (stored, left out of every analysis) or a ", link("preview", "Preview link"), " for somebody who does not sign in. ", made);
+  return h(
+    "p",
+    { class: "quiet rehearsal" },
+    "Try it: ",
+    preview,
+    " (nothing is stored), or make a ",
+    link("pilot", "Pilot link"),
+    " (stored, left out of every analysis) or a ",
+    link("preview", "Preview link"),
+    " for somebody who does not sign in. ",
+    made,
+  );
 }
 
 function participants(results: Results | null): Node[] {
@@ -179,7 +212,13 @@ function participants(results: Results | null): Node[] {
   if (started === 0) return [heading, summary, h("p", { class: "empty" }, begin), ...leftOut(results)];
   return [
     heading,
-    h("div", { class: "figures" }, figure(completed, "completed", "participants-completed"), figure(in_progress, "in progress", "participants-in-progress"), figure(started, "started", "participants-started")),
+    h(
+      "div",
+      { class: "figures" },
+      figure(completed, "completed", "participants-completed"),
+      figure(in_progress, "in progress", "participants-in-progress"),
+      figure(started, "started", "participants-started"),
+    ),
     summary,
     ...leftOut(results),
   ];
@@ -192,9 +231,18 @@ function leftOut(results: Results | null): Node[] {
   const session = (id: string) => number(id.slice(0, 13), id);
   const list = (title: string, items: Node[]) => (items.length === 0 ? [] : [h("details", {}, h("summary", {}, title), h("ul", {}, ...items))]);
   return [
-    ...list(`${excluded.length} left out by your rules`, excluded.map(({ session_id, why }) => h("li", {}, session(session_id), `: ${why}`))),
-    ...list(`${count(standing.repeated.length, "session")} of persons who had taken part before`, standing.repeated.map(({ session_id, counted }) => h("li", {}, session(session_id), ": ", session(counted), " counts"))),
-    ...list("What was noticed of sessions", standing.flagged.map(({ flag, meaning, sessions, excludes }) => h("li", {}, h("code", {}, flag), `: ${count(sessions, "session")}, ${meaning}${excludes ? "; left out by your rules" : ""}`))),
+    ...list(
+      `${excluded.length} left out by your rules`,
+      excluded.map(({ session_id, why }) => h("li", {}, session(session_id), `: ${why}`)),
+    ),
+    ...list(
+      `${count(standing.repeated.length, "session")} of persons who had taken part before`,
+      standing.repeated.map(({ session_id, counted }) => h("li", {}, session(session_id), ": ", session(counted), " counts")),
+    ),
+    ...list(
+      "What was noticed of sessions",
+      standing.flagged.map(({ flag, meaning, sessions, excludes }) => h("li", {}, h("code", {}, flag), `: ${count(sessions, "session")}, ${meaning}${excludes ? "; left out by your rules" : ""}`)),
+    ),
     ...(standing.balance_summary === "" ? [] : [h("p", { class: "quiet", "data-testid": "balance" }, standing.balance_summary)]),
   ];
 }
@@ -216,10 +264,42 @@ function data(selection: Selection): Node[] {
   const file = (ending: Parameters<typeof addressOf>[1], text: string) => h("a", { href: addressOf(selection, ending), download: `${name}-${ending}` }, text);
   return [
     h("h2", {}, "Report and data"),
-    h("p", {}, file("report.html", "Download report (HTML)"), ": everything on this page and the methods, in one file that prints well. ", file("report.md", "Download report (Markdown)"), ": the same for a repository or a paper."),
-    h("p", {}, file("responses.csv", "Responses (CSV)"), ": one row a trial, as it was stored. ", file("codebook.csv", "Codebook (CSV)"), ": what each column means. ", file("pairs.csv", "Pairs (CSV)"), ": the choices as pwcmp reads them. ", file("events.csv", "Events (CSV)"), ": lost focus, resizes, inputs that did not count (", file("events_codebook.csv", "codebook"), ")."),
+    h(
+      "p",
+      {},
+      file("report.html", "Download report (HTML)"),
+      ": everything on this page and the methods, in one file that prints well. ",
+      file("report.md", "Download report (Markdown)"),
+      ": the same for a repository or a paper.",
+    ),
+    h(
+      "p",
+      {},
+      file("responses.csv", "Responses (CSV)"),
+      ": one row a trial, as it was stored. ",
+      file("codebook.csv", "Codebook (CSV)"),
+      ": what each column means. ",
+      file("pairs.csv", "Pairs (CSV)"),
+      ": the choices as pwcmp reads them. ",
+      file("events.csv", "Events (CSV)"),
+      ": lost focus, resizes, inputs that did not count (",
+      file("events_codebook.csv", "codebook"),
+      ").",
+    ),
     h("p", {}, file("participants.csv", "Participants (CSV)"), ": one row a session, with codes, times and browsers. ", file("participants_codebook.csv", "Codebook of participants (CSV)"), "."),
-    h("p", {}, file("export.xlsx", "All tables (Excel)"), ": for a spreadsheet, in any language. The CSV files are for R, Python and other programs; a spreadsheet set to a decimal comma misreads their numbers."),
-    h("p", { class: "quiet" }, "The same of the current version from the command line: ", h("code", {}, `kelir stats ${study} --format csv`), ", ", h("code", {}, `kelir report ${study} -o report.html`)),
+    h(
+      "p",
+      {},
+      file("export.xlsx", "All tables (Excel)"),
+      ": for a spreadsheet, in any language. The CSV files are for R, Python and other programs; a spreadsheet set to a decimal comma misreads their numbers.",
+    ),
+    h(
+      "p",
+      { class: "quiet" },
+      "The same of the current version from the command line: ",
+      h("code", {}, `kelir stats ${study} --format csv`),
+      ", ",
+      h("code", {}, `kelir report ${study} -o report.html`),
+    ),
   ];
 }

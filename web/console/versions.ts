@@ -115,8 +115,11 @@ function row(version: StudyVersion, selection: Selection): Row {
 export function pooledBanner({ version, pooled, different_stimuli }: Pick<Results, "version" | "pooled" | "different_stimuli">, versions: readonly StudyVersion[]): Node[] {
   const old = versions.some((other) => other.version === version && !other.is_current);
   if (pooled.length < 2 && !old) return [];
-  const part = ({ version, sessions, answers }: Results["pooled"][number]) => h("li", {}, h("code", { title: version }, short(version)), `: ${count(sessions, "participant")}, ${count(answers, "answer")}`);
-  const differing = different_stimuli.map(({ item, condition, versions }) => h("li", {}, `${item}, ${condition}: other pixels in `, ...versions.flatMap((hash, i) => [i > 0 ? ", " : "", h("code", { title: hash }, short(hash))])));
+  const part = ({ version, sessions, answers }: Results["pooled"][number]) =>
+    h("li", {}, h("code", { title: version }, short(version)), `: ${count(sessions, "participant")}, ${count(answers, "answer")}`);
+  const differing = different_stimuli.map(({ item, condition, versions }) =>
+    h("li", {}, `${item}, ${condition}: other pixels in `, ...versions.flatMap((hash, i) => [i > 0 ? ", " : "", h("code", { title: hash }, short(hash))])),
+  );
   const what =
     pooled.length < 2
       ? [h("p", {}, "These are the answers of version ", h("code", { title: version }, short(version)), ", which is not the current one.")]

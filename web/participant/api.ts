@@ -42,8 +42,7 @@ export const createSession = (study: string, body: Schemas["NewSession"], key: s
   ask<Schemas["CreatedSession"]>(`${v1}/studies/${encodeURIComponent(study)}/sessions`, ["session_id", "token"], { method: "POST", body, headers: { "idempotency-key": key } });
 
 /** Where a session stands; while answers are unsent here, its plan stays. */
-export const fetchState = (who: Credentials, unsent: number) =>
-  ask<State>(`${session(who.session_id)}${unsent === 0 ? "" : `?unsent=${unsent}`}`, ["session_id", "trials"], { token: who.token });
+export const fetchState = (who: Credentials, unsent: number) => ask<State>(`${session(who.session_id)}${unsent === 0 ? "" : `?unsent=${unsent}`}`, ["session_id", "trials"], { token: who.token });
 
 export const giveConsent = (who: Credentials) => ask<State>(`${session(who.session_id)}/consent`, ["session_id", "trials"], { method: "POST", token: who.token });
 

@@ -32,18 +32,23 @@ declare var WORDS: Record<string, Record<"too-old" | "not-loaded" | "reload", st
     if (refused) root.setAttribute("data-refused", id);
     if (document.getElementById("boot")) return;
     if (document.body) show(id);
-    else document.addEventListener("DOMContentLoaded", function () {
-      if (root.getAttribute("data-started") === null) show(id);
-    });
+    else
+      document.addEventListener("DOMContentLoaded", function () {
+        if (root.getAttribute("data-started") === null) show(id);
+      });
   }
 
-  window.addEventListener("error", function (event) {
-    var element = event.target as HTMLElement | null;
-    var name = element && element.tagName;
-    // Without its style a trial would not stand as it should.
-    if (name === "SCRIPT" || (name === "LINK" && (element as HTMLLinkElement).rel === "stylesheet")) tell("not-loaded", true);
-    else if (String(event.filename).indexOf("/assets/") >= 0) tell("too-old", true);
-  }, true);
+  window.addEventListener(
+    "error",
+    function (event) {
+      var element = event.target as HTMLElement | null;
+      var name = element && element.tagName;
+      // Without its style a trial would not stand as it should.
+      if (name === "SCRIPT" || (name === "LINK" && (element as HTMLLinkElement).rel === "stylesheet")) tell("not-loaded", true);
+      else if (String(event.filename).indexOf("/assets/") >= 0) tell("too-old", true);
+    },
+    true,
+  );
 
   var script = document.createElement("script");
   if (!("noModule" in script) || typeof Object.hasOwn !== "function" || typeof AbortController !== "function") tell("too-old", true);

@@ -7,8 +7,7 @@ export const languages = ({ language, translations }: Pick<Study, "language" | "
 /** The language that the link asks for, else the first that the browser wants and the study has, else the study's own. */
 export function choose(study: Pick<Study, "language" | "translations">, asked: string | null, wanted: readonly string[]): string {
   const all = languages(study);
-  const nearest = (tag: string) =>
-    all.find((language) => language.toLowerCase() === tag.toLowerCase()) ?? all.find((language) => primary(language) === primary(tag));
+  const nearest = (tag: string) => all.find((language) => language.toLowerCase() === tag.toLowerCase()) ?? all.find((language) => primary(language) === primary(tag));
   for (const tag of [...(asked === null ? [] : [asked]), ...wanted]) {
     const found = nearest(tag);
     if (found !== undefined) return found;

@@ -44,7 +44,10 @@ export function fitPair(offered: Offered, room: Room): Layout {
 /** One picture. */
 export function fitOne(offered: Offered, room: Room): Size {
   const [roomW, roomH] = whole(room);
-  return sized(choose(offered, ({ w, h }) => w <= roomW && h <= roomH), room);
+  return sized(
+    choose(offered, ({ w, h }) => w <= roomW && h <= roomH),
+    room,
+  );
 }
 
 function arrange(offered: Offered, room: Room, arrangement: "side" | "stack"): Layout {

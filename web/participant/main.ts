@@ -23,7 +23,10 @@ const studyId = decodeURIComponent(location.pathname.match(/^\/study\/([^/]+)/)?
 const query = new URLSearchParams(location.search);
 /** What the link says of the participant, within what the server takes; an id that is too long stays so, and is refused aloud. `lang` is the page's own. */
 const params = Object.fromEntries(
-  [...query].filter(([name]) => name !== "lang" && [...name].length <= 64).map(([name, value]) => [name, [...value].slice(0, 1024).join("")]).slice(0, 64),
+  [...query]
+    .filter(([name]) => name !== "lang" && [...name].length <= 64)
+    .map(([name, value]) => [name, [...value].slice(0, 1024).join("")])
+    .slice(0, 64),
 );
 
 /** How long the page may stand empty, ms; then it has at least a heading, above which a notice says what is waited for. */
@@ -51,7 +54,10 @@ async function start(): Promise<void> {
   showRibbon(visit);
   const store = openStore(() => (kept ? localStorage : memoryOnly()));
   session = new Session(study.id, key, params, store);
-  const tab = new Tab(key, openStore(() => (kept ? sessionStorage : memoryOnly())));
+  const tab = new Tab(
+    key,
+    openStore(() => (kept ? sessionStorage : memoryOnly())),
+  );
   await settle(session, tab, study.per_visit, elsewhere);
   clearTimeout(empty);
   tabs.claim();

@@ -29,7 +29,7 @@ function upgraded(kept: Kept): Waiting {
 }
 
 /** Whether something that lay in storage can be an entry: anybody may have written there. */
-const isEntry = (kept: Partial<Waiting> & { answer?: unknown } | null): kept is Kept =>
+const isEntry = (kept: (Partial<Waiting> & { answer?: unknown }) | null): kept is Kept =>
   typeof kept === "object" && kept !== null && typeof kept.index === "number" && (typeof kept.body === "string" || typeof kept.answer === "object");
 
 /** An answer without its logs: what is refused or too long in full may pass so. Null where that is no less. */

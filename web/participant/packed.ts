@@ -106,7 +106,9 @@ export class Film {
   constructor(bell: Bell) {
     this.#bell = bell;
     const failed = (error: unknown) => (this.#failure = { error });
-    void this.#decode().catch(failed).then(() => bell.ring());
+    void this.#decode()
+      .catch(failed)
+      .then(() => bell.ring());
   }
 
   /** Null before it is here. */

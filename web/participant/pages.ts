@@ -85,9 +85,7 @@ export function showThanks(screen: HTMLElement, { texts }: Study, { completion_c
   const code = h("output", { class: "code", translate: "no", dir: "ltr", "data-testid": "completion-code", "aria-label": words("code-label") }, completion_code);
   const target = safeRedirect(redirect);
   const action =
-    target !== null
-      ? h("a", { class: "action", href: target.href, rel: "noreferrer" }, words("return-to", { host: target.hostname.replace(/^(app|www)\./, "") }))
-      : copyButton(completion_code);
+    target !== null ? h("a", { class: "action", href: target.href, rel: "noreferrer" }, words("return-to", { host: target.hostname.replace(/^(app|www)\./, "") })) : copyButton(completion_code);
   const content = [
     ...linkedParagraphs(texts.thanks),
     h("div", { class: "receipt" }, h("p", { class: "quiet" }, words("code-stored")), code),

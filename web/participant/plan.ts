@@ -4,9 +4,7 @@ import { words } from "./words/index.ts";
 
 /** The trials that are neither stored on the server nor waiting in this browser, in order. */
 export function remaining(trials: readonly Trial[], waiting: ReadonlySet<number>): Trial[] {
-  return trials
-    .filter((trial) => !trial.answered && !waiting.has(trial.trial_index))
-    .sort((a, b) => a.trial_index - b.trial_index);
+  return trials.filter((trial) => !trial.answered && !waiting.has(trial.trial_index)).sort((a, b) => a.trial_index - b.trial_index);
 }
 
 /** "7 of 25": where a trial stands in the whole plan, counted from one; "7 of at most 43" while others are still to be decided. */

@@ -185,7 +185,12 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
       entry.films.add(film);
       film.hear(entry.here);
     }
-    entry.bytes.then((bytes) => (film.hear(bytes), null), (error: unknown) => error).then((wrong) => (film.settle(wrong), entry.films.delete(film)));
+    entry.bytes
+      .then(
+        (bytes) => (film.hear(bytes), null),
+        (error: unknown) => error,
+      )
+      .then((wrong) => (film.settle(wrong), entry.films.delete(film)));
     const head = await bell.found(() => (film.check(), film.pictures.length > 0 ? film.head : null));
     return { sha256, pixels: [head.width, head.height], kind: "animation", head, film };
   };

@@ -100,7 +100,11 @@ export class Visit {
     return {
       type: TextPage,
       heading: words("instructions-title"),
-      content: () => instructionsContent(this.#study, kinds.map((kind) => kind.legend)),
+      content: () =>
+        instructionsContent(
+          this.#study,
+          kinds.map((kind) => kind.legend),
+        ),
       button: words("instructions-start"),
       testid: "start",
       rules: rulesOf(this.#study),

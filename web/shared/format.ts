@@ -32,9 +32,7 @@ export function pValue(p: number | null | undefined): string {
 
 /** An interval, "0.55 to 1.08". */
 export function interval(low: number | null | undefined, high: number | null | undefined, decimals: number): string {
-  return low === null || low === undefined || high === null || high === undefined
-    ? MISSING
-    : `${fixed(low, decimals)} to ${fixed(high, decimals)}`;
+  return low === null || low === undefined || high === null || high === undefined ? MISSING : `${fixed(low, decimals)} to ${fixed(high, decimals)}`;
 }
 
 /** "1 participant", "2 participants". */

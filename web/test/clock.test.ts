@@ -3,8 +3,7 @@ import { test } from "node:test";
 import { AnimationClock, refreshPeriod } from "../participant/clock.ts";
 
 /** Timestamps of `n` refreshes at `hz`, without those in `dropped`. */
-const refreshes = (hz: number, n: number, dropped: number[] = []) =>
-  Array.from({ length: n }, (_, i) => 100 + (1000 * i) / hz).filter((_, i) => !dropped.includes(i));
+const refreshes = (hz: number, n: number, dropped: number[] = []) => Array.from({ length: n }, (_, i) => 100 + (1000 * i) / hz).filter((_, i) => !dropped.includes(i));
 
 const near = (actual: number | null, expected: number, tolerance: number) =>
   assert.ok(actual !== null && Math.abs(actual - expected) <= tolerance, `${actual} is not within ${tolerance} of ${expected}`);
@@ -98,7 +97,12 @@ test("where frames are whole refreshes each is on for as many, and the loop clos
   assert.deepEqual(play(clock, refreshes(60, 8)), [0, 0, 1, 1, 2, 2, 0, 0]);
   const { shown, skipped, missed_frames, missed_refreshes, refreshes: n, draws } = clock.log();
   assert.deepEqual({ shown, skipped, missed_frames, missed_refreshes, n }, { shown: 4, skipped: 0, missed_frames: 0, missed_refreshes: 0, n: 7 });
-  assert.deepEqual(draws, [[0, 0], [1, 33.333], [2, 66.667], [3, 100]]);
+  assert.deepEqual(draws, [
+    [0, 0],
+    [1, 33.333],
+    [2, 66.667],
+    [3, 100],
+  ]);
 });
 
 test("a display that shows every frame at its time has missed none, at any rate", () => {
@@ -146,7 +150,11 @@ test("a frame that isn't here when its time comes leaves the last one on the scr
   assert.deepEqual([late.log().skipped, late.log().missed_frames], [0, 1]);
 
   const none = film();
-  assert.deepEqual(refreshes(60, 3).map((now) => none.tick(now, () => false)), [-1, -1, -1], "no frame is here yet");
+  assert.deepEqual(
+    refreshes(60, 3).map((now) => none.tick(now, () => false)),
+    [-1, -1, -1],
+    "no frame is here yet",
+  );
 });
 
 test("the position is a function of time: any way to a moment shows the same frame there", () => {

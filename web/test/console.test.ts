@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { addressOf, type BlockReport, type Stimulus, type StudySummary, type StudyVersion } from "../console/api.ts";
-import { flatten, measuredError, standardError } from "../console/provenance.ts";
-import { type Box, placed } from "../console/labels.ts";
-import { points } from "../console/scatter.ts";
-import { niceTicks } from "../console/strips.ts";
-import { statusText } from "../console/status.ts";
 import { smallest } from "../console/gallery.ts";
+import { type Box, placed } from "../console/labels.ts";
+import { flatten, measuredError, standardError } from "../console/provenance.ts";
+import { points } from "../console/scatter.ts";
+import { statusText } from "../console/status.ts";
+import { niceTicks } from "../console/strips.ts";
 import { pageOf, selectionOf } from "../console/versions.ts";
 
 const stimulus = (item: string, condition: string, rmse: number | null): Stimulus => {
@@ -40,7 +40,10 @@ test("what is drawn at several sizes is told once, at the smallest", () => {
 test("names hide no mark, no interval and no other name, also where points crowd; a line leads to those that stand away", () => {
   // Four pairs within 25 px at one share, their intervals half the plot high: as the built-in study looks after six participants.
   const points = [356, 367, 376, 380, 473].map((x) => ({ x, y: 205, width: 80 }));
-  const marks = points.flatMap(({ x, y }) => [{ left: x - 8, right: x + 8, top: y - 8, bottom: y + 8 }, { left: x - 3, right: x + 3, top: 120, bottom: 290 }]);
+  const marks = points.flatMap(({ x, y }) => [
+    { left: x - 8, right: x + 8, top: y - 8, bottom: y + 8 },
+    { left: x - 3, right: x + 3, top: 120, bottom: 290 },
+  ]);
   const labels = placed(points, marks, { left: 46, right: 746, top: 58, bottom: 338 });
   const apart = (a: Box, b: Box) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
   labels.forEach(({ box }, i) => {
@@ -61,7 +64,11 @@ test("ticks are round and reach the largest value", () => {
 });
 
 test("provenance is read to its leaves, and what is null is left out", () => {
-  assert.deepEqual(flatten({ a: { b: 1, c: null }, size: [592, 333], d: "x" }), [["a.b", 1], ["size", "592, 333"], ["d", "x"]]);
+  assert.deepEqual(flatten({ a: { b: 1, c: null }, size: [592, 333], d: "x" }), [
+    ["a.b", 1],
+    ["size", "592, 333"],
+    ["d", "x"],
+  ]);
   assert.deepEqual(flatten({ list: [{ a: 1 }] }), [["list.0.a", 1]]);
 });
 
@@ -103,7 +110,13 @@ test("an address names versions by hashes or their beginnings, and nothing that 
   assert.deepEqual(read("version=beef0123b&with=c0ffee00,beef0123c"), { study: "s", version: second, pooled: [current, third] });
   assert.deepEqual(read(`version=${third}&with=all`), { study: "s", version: third, pooled: [current, second] });
   assert.deepEqual(read("with=c0ffee00,beef0123b,beef0123b"), { study: "s", version: current, pooled: [second] }, "neither with itself nor twice");
-  for (const [query, name] of [["version=beef0123", "beef0123"], ["version=beef01", "beef01"], ["version=00000000", "00000000"], ["with=beef0123", "beef0123"], ["version=c0ffee00&with=x", "x"]] as const) {
+  for (const [query, name] of [
+    ["version=beef0123", "beef0123"],
+    ["version=beef01", "beef01"],
+    ["version=00000000", "00000000"],
+    ["with=beef0123", "beef0123"],
+    ["version=c0ffee00&with=x", "x"],
+  ] as const) {
     assert.deepEqual(read(query), { unknown: name });
   }
   assert.deepEqual(selectionOf("s", new URLSearchParams(), []), { study: "s", version: "current", pooled: [] });

@@ -78,7 +78,10 @@ test("a server without ranges sends all of it again, and nothing is counted twic
 
 test("bytes that come again and are others are told of, before all have come", async () => {
   const other = Buffer.from(data).fill(1, 40_000, 40_001);
-  const { get, wrong } = await line((response) => void head(response, 0).write(other.subarray(0, 50_000)), (response) => whole(response, 0));
+  const { get, wrong } = await line(
+    (response) => void head(response, 0).write(other.subarray(0, 50_000)),
+    (response) => whole(response, 0),
+  );
   assert.deepEqual(Buffer.from(await get()), data);
   assert.equal(wrong(), 1);
 });

@@ -57,7 +57,11 @@ function late(begun: number, rate: number): number {
 }
 
 test("a pair such as the built-in one begins after 2.5 MB at 9 Mbit/s, and later on a slower line; nothing is late even where it slows down by a tenth", () => {
-  for (const [mbits, least, most] of [[9, 2.2e6, 2.5e6], [3, 3.4e6, 3.6e6], [1.6, 3.7e6, 3.9e6]] as const) {
+  for (const [mbits, least, most] of [
+    [9, 2.2e6, 2.5e6],
+    [3, 3.4e6, 3.6e6],
+    [1.6, 3.7e6, 3.9e6],
+  ] as const) {
     const rate = (mbits * 1e6) / 8 / 1000;
     const begun = beginsAfter(rate);
     assert.ok(begun >= least && begun <= most, `${begun} bytes at ${mbits} Mbit/s`);

@@ -22,7 +22,10 @@ test("small p-values keep their digits", () => {
 });
 
 test("significant digits, plain where that reads well", () => {
-  assert.deepEqual([0.00821, 12.345, 123456, 1234567, -0.5].map((x) => significant(x)), ["0.00821", "12.3", "123456", "1.23 × 10⁶", "−0.500"]);
+  assert.deepEqual(
+    [0.00821, 12.345, 123456, 1234567, -0.5].map((x) => significant(x)),
+    ["0.00821", "12.3", "123456", "1.23 × 10⁶", "−0.500"],
+  );
 });
 
 test("intervals and counts", () => {

@@ -18,7 +18,7 @@ test("the server's problem document is read, a proxy's page is not", () => {
 test("every field that is wrong is named with its value and its rule", () => {
   const errors = [
     { pointer: "/rt", value: -1, rule: "must be a number from 0 to 86400000" },
-    { pointer: "/choice", rule: "must be \"left\" or \"right\"" },
+    { pointer: "/choice", rule: 'must be "left" or "right"' },
     { pointer: "/onset", value: null, rule: "must be a number" },
   ];
   const found = refusal(422, JSON.stringify({ status: 422, code: "invalid_field", detail: "The answer has faults.", errors }), null);

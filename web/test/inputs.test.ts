@@ -46,11 +46,25 @@ test("the second click of a double click, and what a script makes, never count",
 
 test("quick touches at one place are a series, as a mouse's clicks are; later or elsewhere another begins", () => {
   const quick = new QuickPresses();
-  const counts = [[1000, 100], [1180, 110], [1660, 90], [2160, 90], [2400, 145], [2500, 300], [2600, 300]].map(([at = 0, x = 0]) => quick.count(at, x, 50));
+  const counts = [
+    [1000, 100],
+    [1180, 110],
+    [1660, 90],
+    [2160, 90],
+    [2400, 145],
+    [2500, 300],
+    [2600, 300],
+  ].map(([at = 0, x = 0]) => quick.count(at, x, 50));
   assert.deepEqual(counts, [1, 2, 3, 1, 1, 1, 2]);
   const box = (left: number) => ({ left, right: left + 100, top: 0, bottom: 100 });
-  assert.deepEqual([box(250), box(350), box(351)].map((at) => quick.left(2700, at)), [400, 400, 0]);
-  assert.deepEqual([3099, 3100, 9000].map((at) => quick.left(at, box(250))), [1, 0, 0]);
+  assert.deepEqual(
+    [box(250), box(350), box(351)].map((at) => quick.left(2700, at)),
+    [400, 400, 0],
+  );
+  assert.deepEqual(
+    [3099, 3100, 9000].map((at) => quick.left(at, box(250))),
+    [1, 0, 0],
+  );
 });
 
 test("a key that is held answers once, whatever its repeats look like", () => {
@@ -97,7 +111,10 @@ test("without rules of its own a study takes answers as quickly as people give t
   const verdicts = Array.from({ length: 10 }, (_, i) => tap(guard, i % 2 === 0 ? "key:ArrowLeft" : "key:ArrowRight", 150 * i, EDITION_1));
   assert.deepEqual(verdicts, Array(10).fill(null));
   const same = new InputGuard();
-  assert.deepEqual(Array.from({ length: 5 }, (_, i) => tap(same, "key:ArrowLeft", 200 * i, EDITION_1)), Array(5).fill(null));
+  assert.deepEqual(
+    Array.from({ length: 5 }, (_, i) => tap(same, "key:ArrowLeft", 200 * i, EDITION_1)),
+    Array(5).fill(null),
+  );
 });
 
 test("a click that no key and no pointer made, as a screen reader's, is an input like any other", () => {

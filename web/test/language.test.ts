@@ -13,7 +13,10 @@ test("the link's language counts first, then the browser's in their order, then 
   assert.equal(choose(study, "fr", ["fi", "de-AT", "en"]), "de");
   assert.equal(choose(study, null, ["fi"]), "en");
   const regional = { language: "pt-BR", translations: { pt: { ...study } } };
-  assert.deepEqual(["pt-BR", "pt", "pt-AO", "xx"].map((asked) => choose(regional, asked, [])), ["pt-BR", "pt", "pt-BR", "pt-BR"]);
+  assert.deepEqual(
+    ["pt-BR", "pt", "pt-AO", "xx"].map((asked) => choose(regional, asked, [])),
+    ["pt-BR", "pt", "pt-BR", "pt-BR"],
+  );
 });
 
 test("a study reads whole in its language, and in its own where it has no other", () => {
@@ -40,7 +43,13 @@ test("an address ends with its sentence, and where a script without blanks goes 
   assert.deepEqual(found("質問はwww.example.org/q?a=1へ（mail@example.org）。"), ["www.example.org/q?a=1", "mail@example.org"]);
   assert.deepEqual(found("Größe: müller@bücher.example"), ["müller@bücher.example"]);
   assert.deepEqual(found("javascript:alert(1) data:text/html,x a@b"), []);
-  for (const text of ["a", "", "漢字", "x@y.example"]) assert.equal(pieces(text).map((piece) => piece.text).join(""), text);
+  for (const text of ["a", "", "漢字", "x@y.example"])
+    assert.equal(
+      pieces(text)
+        .map((piece) => piece.text)
+        .join(""),
+      text,
+    );
 });
 
 test("no text takes long to be looked through", () => {

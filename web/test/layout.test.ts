@@ -3,7 +3,13 @@ import { test } from "node:test";
 import { fitOne, fitPair, inkOn, type Layout, type Offered, srgbCode } from "../participant/layout.ts";
 
 const one: Offered = { sizes: [[592, 333]], fit: "native" };
-const two = (fit: Offered["fit"]): Offered => ({ sizes: [[592, 333], [1008, 567]], fit });
+const two = (fit: Offered["fit"]): Offered => ({
+  sizes: [
+    [592, 333],
+    [1008, 567],
+  ],
+  fit,
+});
 const fit = (roomWidth: number, roomHeight: number, devicePixelRatio = 1, offered = one) => fitPair(offered, { roomWidth, roomHeight, devicePixelRatio });
 
 test("two pictures of the study's size fit a 1280-pixel window side by side at native pixels", () => {

@@ -97,7 +97,11 @@ async function console_(name, options, scheme) {
   await page.getByRole("heading", { name: "Studies" }).waitFor();
   await shot("2-studies");
   const pooled = `${study.id}?version=${versions.before.slice(0, 12)}&with=${versions.current.slice(0, 12)},${versions.pilot.slice(0, 12)}`;
-  for (const [label, id] of [[study.id, study.id], ["empty", "empty"], ["pooled", pooled]]) {
+  for (const [label, id] of [
+    [study.id, study.id],
+    ["empty", "empty"],
+    ["pooled", pooled],
+  ]) {
     await page.goto(`${mock.url}/console/studies/${id}`);
     await page.getByText("Participants").first().waitFor();
     await page.waitForTimeout(1000);

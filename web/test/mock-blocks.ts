@@ -26,11 +26,26 @@ const none: Test = { mean: null, sd: null, t: null, df: null, p: null, note: "of
 const unanswered = [block("stills", "Stills", "still", "mc", [0, 0, 0], none), block("animation", "Animation", "animation", "mc", [0, 0], none)];
 
 const around = (x: number, half: number): Schemas["Interval"] => ({ low: x - half, high: x + half, level: 0.95 });
-const resampled = (x: number, half: number): Schemas["Bootstrap"] => ({ ...around(x, half), estimate: x, standard_error: half / 1.96, replicates: 2000, undefined: 0, seed: 1, method: "bias-corrected" });
+const resampled = (x: number, half: number): Schemas["Bootstrap"] => ({
+  ...around(x, half),
+  estimate: x,
+  standard_error: half / 1.96,
+  replicates: 2000,
+  undefined: 0,
+  seed: 1,
+  method: "bias-corrected",
+});
 const share = (chosen: number, trials: number, half: number, by_participant: Schemas["Bootstrap"] | null = null): Schemas["Proportion"] => ({
   ...{ chosen, trials, proportion: chosen / trials, wilson: around(chosen / trials, half), by_participant },
 });
-const odds = (estimate: number, se: number, p: number): Schemas["Coefficient"] => ({ estimate, standard_error: se, statistic: estimate / se, p, low: estimate - 1.96 * se, high: estimate + 1.96 * se });
+const odds = (estimate: number, se: number, p: number): Schemas["Coefficient"] => ({
+  estimate,
+  standard_error: se,
+  statistic: estimate / se,
+  p,
+  low: estimate - 1.96 * se,
+  high: estimate + 1.96 * se,
+});
 const size = (g: number): Schemas["EffectSize"] => ({ d: g * 1.025, d_interval: around(g * 1.025, 0.35), g, g_interval: around(g, 0.344) });
 const equivalent = (bounds: Schemas["Bounds"], p: number): Schemas["Equivalence"] => ({ bounds, p, p_lower: p / 2, p_upper: p, t_lower: 2, t_upper: -2, half_width: 0.5, interval_90: around(0, 0.2) });
 const bayes = (bf01: number): Schemas["JzsBayesFactor"] => ({ bf01, bf10: 1 / bf01, ln_bf10: -Math.log(bf01), prior_scale: Math.SQRT1_2 });
@@ -66,7 +81,17 @@ function analysis(summary: Schemas["BlockSummary"], judged: Judged | null): Sche
     mixed_logit:
       icc === null
         ? null
-        : { ...who, coefficients: [odds(judged.odds * 1.1, 0.29, 0.17)], sigma: 0.6, sigma_p: 0.2, latent_icc: 0.1, boundary: false, saturated: false, log_likelihood: -40, log_likelihood_independent: -41 },
+        : {
+            ...who,
+            coefficients: [odds(judged.odds * 1.1, 0.29, 0.17)],
+            sigma: 0.6,
+            sigma_p: 0.2,
+            latent_icc: 0.1,
+            boundary: false,
+            saturated: false,
+            log_likelihood: -40,
+            log_likelihood_independent: -41,
+          },
     notes: judged.notes,
   };
 }
@@ -82,7 +107,10 @@ export const judged: Schemas["BlockReport"][] = [
     ...summaries[0],
     p_holm: 0.16056941534857747,
     analysis: analysis(summaries[0], { g: -0.248, points: 0.0114, sd: 0.087, bf01: 2.1, proportion: share(26, 64, 0.118, resampled(0.406, 0.125)), icc: 0.093, odds: -0.379, notes: [absent, unlike] }),
-    by_item: [{ id: "stills-1", target: share(12, 32, 0.16) }, { id: "stills-2", target: share(14, 32, 0.165) }],
+    by_item: [
+      { id: "stills-1", target: share(12, 32, 0.16) },
+      { id: "stills-2", target: share(14, 32, 0.165) },
+    ],
     ...first(share(33, 64, 0.12)),
     ...times(64, 2310, 3420.5, 5204),
   },
@@ -90,7 +118,10 @@ export const judged: Schemas["BlockReport"][] = [
     ...summaries[1],
     p_holm: 0.000611346,
     analysis: analysis(summaries[1], { g: 0.726, points: 0.5, sd: 0.89, bf01: 0.0071, proportion: share(48, 64, 0.105, resampled(0.75, 0.117)), icc: 0.167, odds: 1.0986, notes: [unlike] }),
-    by_item: [{ id: "photographs-1", target: share(23, 32, 0.15) }, { id: "photographs-2", target: share(25, 32, 0.14) }],
+    by_item: [
+      { id: "photographs-1", target: share(23, 32, 0.15) },
+      { id: "photographs-2", target: share(25, 32, 0.14) },
+    ],
     ...first(share(30, 64, 0.12)),
     ...times(64, 1900, 2754, 4410),
   },
@@ -105,7 +136,15 @@ export const judged: Schemas["BlockReport"][] = [
 ];
 
 /** The same two blocks before anybody came. */
-export const unjudged: Schemas["BlockReport"][] = unanswered.map((summary) => ({ ...summary, p_holm: null, analysis: analysis(summary, null), by_item: [], ...first(null), rt_ms: null, rt_percentiles_ms: [] }));
+export const unjudged: Schemas["BlockReport"][] = unanswered.map((summary) => ({
+  ...summary,
+  p_holm: null,
+  analysis: analysis(summary, null),
+  by_item: [],
+  ...first(null),
+  rt_ms: null,
+  rt_percentiles_ms: [],
+}));
 
 const jod = [-0.62, 0.18, 0.44];
 const named = ["simulated-photo", "pa", "mc"];
@@ -127,7 +166,14 @@ export function paper(): Schemas["Replication"] {
   const titles = ["PA against MC, two pairs of still images", "PA against photographs, two pairs of still images", "PA against MC, one pair of animations"];
   const comparisons = judged.map((b, i): Schemas["Comparison"] => ({
     ...{ id: ["still-mc", "still-photo", "animation-mc"][i] ?? "", title: titles[i] ?? "", printed: { mean: b.mean ?? 0, sd: b.sd ?? 0, t: [-1.438, 4.209, -3.293][i] ?? 0 } },
-    ...{ counts: Object.entries(b.counts).map(([k, n]): [number, number] => [Number(k), n]), reconstructions: 1, test: sample(b), t_as_printed: i < 2, p_holm: b.p_holm ?? 1, effect: size(b.analysis.effect?.g ?? 0) },
+    ...{
+      counts: Object.entries(b.counts).map(([k, n]): [number, number] => [Number(k), n]),
+      reconstructions: 1,
+      test: sample(b),
+      t_as_printed: i < 2,
+      p_holm: b.p_holm ?? 1,
+      effect: size(b.analysis.effect?.g ?? 0),
+    },
     equivalence_points: equivalent({ points: 0.5 }, b.analysis.equivalence[0]?.p ?? 1),
     equivalence_sd: equivalent({ sd: 0.5 }, b.analysis.equivalence[1]?.p ?? 1),
     bayes: bayes(b.analysis.bayes?.bf01 ?? 1),

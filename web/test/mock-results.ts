@@ -36,7 +36,13 @@ const provenance = (condition: string, i: number) => ({
   scene_sha256: "6a1f0c".padEnd(64, "3"),
   ...(condition === "pa" ? { technique: "pa", table: "u32" } : { technique: "mc", spp: 1024, seed: 7 }),
   ...{ version: "0.1.0", backend: "cpu", adapter: "2 threads", white: 812.25, size: [592, 333], pixel: "area", output: "still", camera: null },
-  error: { reference: { technique: "mc", spp: 65536, seed: 1 }, frames: [0], all: errors(2e-4 * (1 + i)), penumbra: errors(condition === "pa" ? 9.2e-5 * (1 + 0.4 * i) : 1.3e-3 * (1 + 0.3 * i)), floor: 7.9e-5 },
+  error: {
+    reference: { technique: "mc", spp: 65536, seed: 1 },
+    frames: [0],
+    all: errors(2e-4 * (1 + i)),
+    penumbra: errors(condition === "pa" ? 9.2e-5 * (1 + 0.4 * i) : 1.3e-3 * (1 + 0.3 * i)),
+    floor: 7.9e-5,
+  },
   counts: { pixels: 197136, pixels_penumbra: 30512 },
 });
 
@@ -85,7 +91,15 @@ const standing = (taken: boolean): Schemas["Standing"] => ({
   balance_summary: taken ? "Of each item's judged answers the target came first in half, give or take the odd one." : "",
 });
 const excluded: Schemas["Excluded"][] = [
-  { session_id: "01936d2e-5b1a-7c3e-9a53-0d4b1f2a6c11", reasons: [{ reason: "too_fast", trials: 4, allowed: 1 }, { reason: "straight_lining", trials: 5 }], why: "4 answers too fast, 1 allowed; the same side in all 5 trials", is_completed: true },
+  {
+    session_id: "01936d2e-5b1a-7c3e-9a53-0d4b1f2a6c11",
+    reasons: [
+      { reason: "too_fast", trials: 4, allowed: 1 },
+      { reason: "straight_lining", trials: 5 },
+    ],
+    why: "4 answers too fast, 1 allowed; the same side in all 5 trials",
+    is_completed: true,
+  },
 ];
 
 export const results =
@@ -112,11 +126,23 @@ export const results =
     const blocks = taken ? judged : unjudged;
     const common = { study: id, title: found.title, ...choice, standing: standing(taken), stimuli: taken ? stimuliOf(stuff) : [] };
     if (what === "results") {
-      const reply: Schemas["StudyResults"] = { ...common, display: "Pictures are made at 592 × 333 pixels.", downloads: [{ size: [592, 333], bytes: 4_800_000, is_heavy: false }, { size: [1008, 567], bytes: 13_900_000, is_heavy: true }], excluded: [], blocks };
+      const reply: Schemas["StudyResults"] = {
+        ...common,
+        display: "Pictures are made at 592 × 333 pixels.",
+        downloads: [
+          { size: [592, 333], bytes: 4_800_000, is_heavy: false },
+          { size: [1008, 567], bytes: 13_900_000, is_heavy: true },
+        ],
+        excluded: [],
+        blocks,
+      };
       return [200, reply];
     }
     if (what === "report") {
-      const methods = ["Participants saw 5 pairs of stimuli in 3 blocks and had to choose one of each pair.", "Effect sizes are Cohen's d and Hedges' g with 95% intervals from the noncentral t distribution."];
+      const methods = [
+        "Participants saw 5 pairs of stimuli in 3 blocks and had to choose one of each pair.",
+        "Effect sizes are Cohen's d and Hedges' g with 95% intervals from the noncentral t distribution.",
+      ];
       const reply: Schemas["StudyReport"] = {
         ...common,
         ...{ shown: [], blocks, methods, references: [], screening, design, question: study.question, kelir_version: "0.1.0" },

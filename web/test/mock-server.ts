@@ -13,8 +13,7 @@ import { type Material, material, type Planned, study } from "./mock-study.ts";
 type Schemas = components["schemas"];
 
 const TYPES: Record<string, string> = { ".js": "text/javascript; charset=utf-8", ".css": "text/css; charset=utf-8", ".svg": "image/svg+xml", ".txt": "text/plain; charset=utf-8" };
-const CSP =
-  "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+const CSP = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
 const HEADERS = {
   "content-security-policy": CSP,
@@ -74,7 +73,22 @@ export const problem = (status: number, code: Schemas["ProblemCode"], detail: st
   return [status, body];
 };
 
-export async function startMock({ dist, port = 0, fault = () => null, results = null, stuff = material(), grow = null, response = study.response, shownAs = study.display, perVisit = false, serve = null, ranges = true, spoil = "", texts = {}, visitKind = "participant" }: Options) {
+export async function startMock({
+  dist,
+  port = 0,
+  fault = () => null,
+  results = null,
+  stuff = material(),
+  grow = null,
+  response = study.response,
+  shownAs = study.display,
+  perVisit = false,
+  serve = null,
+  ranges = true,
+  spoil = "",
+  texts = {},
+  visitKind = "participant",
+}: Options) {
   const sessions = new Map<string, Session>();
   const log: Array<{ method: string; path: string; query: string; text: string; key: string | undefined }> = [];
   let researcher = false;
@@ -158,7 +172,16 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     }
     if (method === "POST" && path === `/api/v1/studies/${study.id}/sessions`) {
       const same = key === undefined ? undefined : [...sessions.values()].find((other) => other.key === key && !other.consented);
-      const s: Session = same ?? { id: `${visitKind === "preview" ? "preview-" : ""}${randomUUID()}`, token: randomUUID(), key, consented: false, replans: 0, answers: new Map(), code: null, body: body as Session["body"] };
+      const s: Session = same ?? {
+        id: `${visitKind === "preview" ? "preview-" : ""}${randomUUID()}`,
+        token: randomUUID(),
+        key,
+        consented: false,
+        replans: 0,
+        answers: new Map(),
+        code: null,
+        body: body as Session["body"],
+      };
       s.token = randomUUID();
       sessions.set(s.id, s);
       const created: Schemas["CreatedSession"] = { ...state(s), token: s.token };
@@ -210,7 +233,12 @@ export async function startMock({ dist, port = 0, fault = () => null, results = 
     }
     const page = path.startsWith("/study/") ? "participant.html" : path.startsWith("/console") ? "console.html" : null;
     try {
-      if (page !== null) return send(200, "text/html; charset=utf-8", (await readFile(join(dist, page), "utf8")).replace("<script", () => `${spoil === "" ? "" : '<script src="/assets/spoil.js"></script>'}<script`));
+      if (page !== null)
+        return send(
+          200,
+          "text/html; charset=utf-8",
+          (await readFile(join(dist, page), "utf8")).replace("<script", () => `${spoil === "" ? "" : '<script src="/assets/spoil.js"></script>'}<script`),
+        );
       if (path === "/assets/spoil.js") return send(200, TYPES[".js"] ?? "", spoil);
       if (path.startsWith("/assets/")) return send(200, TYPES[extname(path)] ?? "application/octet-stream", await readFile(join(dist, "assets", path.slice(8))));
     } catch {

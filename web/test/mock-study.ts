@@ -100,7 +100,12 @@ export class Maker implements Material {
   }
 
   swinging(look: Look, frames: number, fps: number, size = SMALL) {
-    return this.animation(Array.from({ length: frames }, (_, i) => rows({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) }, size)), fps, true, size);
+    return this.animation(
+      Array.from({ length: frames }, (_, i) => rows({ ...look, turn: 0.3 * Math.sin((2 * Math.PI * i) / frames) }, size)),
+      fps,
+      true,
+      size,
+    );
   }
 
   /** Flat greys, the code rising by 4 from frame to frame, in pictures of these lengths. */

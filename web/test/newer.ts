@@ -26,7 +26,9 @@ const number = (version: string) => {
 function everywhere({ __compat }: Entry): boolean {
   return Object.entries({ ...oldest, Safari_iOS: oldest.Safari }).every(([browser, version]: [string, string]) => {
     const support = __compat?.support[browser.toLowerCase()] ?? [];
-    return [support].flat().some(({ version_added: added, flags, prefix, alternative_name: other }) => typeof added === "string" && added !== "preview" && !flags && !prefix && !other && number(added) <= number(version));
+    return [support]
+      .flat()
+      .some(({ version_added: added, flags, prefix, alternative_name: other }) => typeof added === "string" && added !== "preview" && !flags && !prefix && !other && number(added) <= number(version));
   });
 }
 

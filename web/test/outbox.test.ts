@@ -108,7 +108,15 @@ test("answers survive a reload: a new outbox on the same storage sends them", as
   await second.outbox.settled();
   assert.deepEqual(second.stored, [[3, 4]]);
   // Another storage knows nothing of them: it is the storage that carries them over.
-  assert.deepEqual([...bench(() => true, openStore(() => disk())).outbox.indices], []);
+  assert.deepEqual(
+    [
+      ...bench(
+        () => true,
+        openStore(() => disk()),
+      ).outbox.indices,
+    ],
+    [],
+  );
 });
 
 for (const status of [408, 429, 500, 503]) {
@@ -130,7 +138,10 @@ for (const status of [400, 401, 404, 413, 422]) {
     await outbox.settled();
     assert.equal(timers.size, 0);
     assert.deepEqual(sent, [0, 1]);
-    assert.deepEqual(outbox.refused.map((e) => [e.index, e.refused]), [[0, "Not like this."]]);
+    assert.deepEqual(
+      outbox.refused.map((e) => [e.index, e.refused]),
+      [[0, "Not like this."]],
+    );
     assert.equal(lines.at(-1), "refused");
   });
 }
@@ -172,7 +183,10 @@ test("a resend has the same bytes, after a reload too", async () => {
 });
 
 test("answers that a page before the update left are sent, in order, refused ones when asked to", async () => {
-  const old = [{ index: 1, answer: { choice: "right", rt: 2.5, onset: 1, plugin_version: "1.0.0" } }, { index: 3, answer: answer("left"), refused: "no" }];
+  const old = [
+    { index: 1, answer: { choice: "right", rt: 2.5, onset: 1, plugin_version: "1.0.0" } },
+    { index: 3, answer: answer("left"), refused: "no" },
+  ];
   disks.setItem("box", JSON.stringify(old));
   const { outbox, sent, bodies } = bench(() => true);
   assert.deepEqual([...outbox.indices], [1, 3]);
@@ -191,14 +205,20 @@ test("the first answer to a trial stands", async () => {
   outbox.put(0, answer("left"));
   outbox.put(0, answer("right"));
   await settle();
-  assert.deepEqual(outbox.waiting.map((e) => JSON.parse(e.body).choice), ["left"]);
+  assert.deepEqual(
+    outbox.waiting.map((e) => JSON.parse(e.body).choice),
+    ["left"],
+  );
 });
 
 test("the server's own waiting time is respected", async () => {
   const { outbox, timers } = bench(() => new Refused(429, "slow_down", "x", 20_000));
   outbox.put(0, answer("left"));
   await settle();
-  assert.deepEqual([...timers.values()].map((t) => t.ms), [20_000]);
+  assert.deepEqual(
+    [...timers.values()].map((t) => t.ms),
+    [20_000],
+  );
 });
 
 test("a store lists its keys by their beginning", () => {
@@ -222,8 +242,14 @@ test("a stopped outbox sends nothing more", async () => {
 });
 
 test("waiting doubles from one second to thirty, with jitter below", () => {
-  assert.deepEqual([1, 2, 3, 4, 5, 6, 60].map((n) => backoffMs(n, () => 1)), [1000, 2000, 4000, 8000, 16_000, 30_000, 30_000]);
-  assert.equal(backoffMs(3, () => 0), 2000);
+  assert.deepEqual(
+    [1, 2, 3, 4, 5, 6, 60].map((n) => backoffMs(n, () => 1)),
+    [1000, 2000, 4000, 8000, 16_000, 30_000, 30_000],
+  );
+  assert.equal(
+    backoffMs(3, () => 0),
+    2000,
+  );
 });
 
 const logged = { ...answer("left"), viewport: [1280, 800], frames: { left: { fps: 12 } } };
@@ -233,14 +259,23 @@ test("an answer that is refused with its logs is sent without them", async () =>
   outbox.put(0, logged);
   await outbox.settled();
   assert.deepEqual([sent, stored], [[0, 0], [[0, 1]]]);
-  assert.deepEqual(bodies.map((body) => Object.keys(JSON.parse(body)).length), [5, 3]);
+  assert.deepEqual(
+    bodies.map((body) => Object.keys(JSON.parse(body)).length),
+    [5, 3],
+  );
 });
 
 test("what something in between will not carry goes without its logs after three tries", async () => {
   const { outbox, sent, bodies, elapse } = bench((_, tries) => (tries <= 3 ? new Refused(413, "http_413", "proxy") : true));
   outbox.put(0, logged);
   for (let i = 0; i < 4; i++) await (settle(), elapse());
-  assert.deepEqual([sent, bodies.map((body) => body.includes("frames"))], [[0, 0, 0, 0], [true, true, true, false]]);
+  assert.deepEqual(
+    [sent, bodies.map((body) => body.includes("frames"))],
+    [
+      [0, 0, 0, 0],
+      [true, true, true, false],
+    ],
+  );
   assert.deepEqual(outbox.waiting, []);
 });
 

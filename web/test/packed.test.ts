@@ -50,7 +50,10 @@ test("it says where each picture ends and when it is shown first", () => {
   const twice = packed([[1], [2, 3]], 0, { frames: [0, 0, 0, 1, 0, 1], fps: 20 });
   assert.equal(unpacking.head(twice)?.width, 1);
   const first = twice.length - 3;
-  assert.deepEqual(unpacking.pictures, [{ start: first, end: first + 1, shownMs: 0 }, { start: first + 1, end: first + 3, shownMs: 150 }]);
+  assert.deepEqual(unpacking.pictures, [
+    { start: first, end: first + 1, shownMs: 0 },
+    { start: first + 1, end: first + 3, shownMs: 150 },
+  ]);
 });
 
 test("a head that is none is refused", () => {

@@ -41,13 +41,23 @@ test("while a plan grows its length is not known, only its most", () => {
 });
 
 test("an acknowledged trial is answered, and only that one", () => {
-  assert.deepEqual(withAnswered([trial(0), trial(1)], 1).map((t) => t.answered), [false, true]);
+  assert.deepEqual(
+    withAnswered([trial(0), trial(1)], 1).map((t) => t.answered),
+    [false, true],
+  );
 });
 
 test("decided trials are added once, and never change what is known", () => {
   const grown = withAnswered([trial(0), trial(1)], 0, [{ ...trial(1), width: 7 }, trial(2)]);
   assert.deepEqual(indices(grown), [0, 1, 2]);
-  assert.deepEqual(grown.map((t) => [t.answered, t.width]), [[true, 592], [false, 592], [false, 592]]);
+  assert.deepEqual(
+    grown.map((t) => [t.answered, t.width]),
+    [
+      [true, 592],
+      [false, 592],
+      [false, 592],
+    ],
+  );
   // An answer that was resent brings its trials again.
   assert.deepEqual(indices(withAnswered(grown, 0, [trial(1), trial(2)])), [0, 1, 2]);
 });

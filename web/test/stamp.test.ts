@@ -7,7 +7,11 @@ const file = stamped(inputs, "export interface paths {}\n");
 
 test("a generated file is known by its document, its generator and its own text", () => {
   assert.equal(fault(inputs, file), null);
-  for (const changed of [{ ...inputs, document: `${inputs.document} ` }, { ...inputs, lock: "[]\n" }]) assert.match(fault(changed, file) ?? "", /older/);
+  for (const changed of [
+    { ...inputs, document: `${inputs.document} ` },
+    { ...inputs, lock: "[]\n" },
+  ])
+    assert.match(fault(changed, file) ?? "", /older/);
   // Two texts are not one: what moves from one file to the other is seen too.
   assert.match(fault({ document: inputs.document.slice(0, -1), lock: `\n${inputs.lock}` }, file) ?? "", /older/);
 });

@@ -32,7 +32,12 @@ test("the participant is told why, and not about what works", () => {
 
 test("settings that are no durations are an error with its field", () => {
   assert.deepEqual(requested({ fixation_ms: 0, first_ms: 1, mask_ms: 0, second_ms: 2 }), ms(0, 1, 0, 2));
-  for (const [settings, field] of [[null, /fixation_ms/], [{ fixation_ms: 0, first_ms: 0, mask_ms: 0, second_ms: 1 }, /first_ms = 0/], [{ fixation_ms: -1 }, /fixation_ms = -1/], [{ fixation_ms: "9" }, /fixation_ms/]] as const) {
+  for (const [settings, field] of [
+    [null, /fixation_ms/],
+    [{ fixation_ms: 0, first_ms: 0, mask_ms: 0, second_ms: 1 }, /first_ms = 0/],
+    [{ fixation_ms: -1 }, /fixation_ms = -1/],
+    [{ fixation_ms: "9" }, /fixation_ms/],
+  ] as const) {
     assert.throws(() => requested(settings), field);
   }
 });

@@ -21,7 +21,10 @@ test("the page speaks the language it is told, and the document says which", () 
 test("numbers take the forms of their language", () => {
   speak("ar");
   const minutes = [1, 2, 3, 11].map((n) => words("consent-minutes", { minutes: n }).replace(/[\u2068\u2069]/g, ""));
-  assert.deepEqual(minutes.map((text) => text.split(" نحو ")[1]), ["دقيقة واحدة.", "دقيقتين.", "3 دقائق.", "11 دقيقة."]);
+  assert.deepEqual(
+    minutes.map((text) => text.split(" نحو ")[1]),
+    ["دقيقة واحدة.", "دقيقتين.", "3 دقائق.", "11 دقيقة."],
+  );
   speak("en");
   assert.equal(words("missing", { count: 1 }).split(" ")[0], "One");
   assert.equal(words("missing", { count: 2 }).split(" ")[0], "2");
@@ -36,11 +39,7 @@ test("catalogues that differ are told apart, and messages that nobody says", () 
   const en = read("a-title = A { $n }\nb = B\n");
   const said = `words("a-title", { n: 1 }); words("b")`;
   assert.deepEqual(faults({ en, de: read("a-title = { $n } A\nb = B\n") }, said), []);
-  assert.deepEqual(faults({ en, de: read("a-title = A\nc = C\n") }, said), [
-    "de has no b",
-    "de's a-title takes nothing, and English's n",
-    "de has c, which English has not",
-  ]);
+  assert.deepEqual(faults({ en, de: read("a-title = A\nc = C\n") }, said), ["de has no b", "de's a-title takes nothing, and English's n", "de has c, which English has not"]);
   assert.deepEqual(faults({ en }, `words("b")`), ["a-title is said nowhere"]);
   assert.throws(() => read("a = { $n\nb = B"), /no message: a = \{ \$n/);
   assert.throws(() => read("a = A\na = B"), /a is there twice/);

@@ -15,9 +15,7 @@ db.exec(`
 `);
 const sha256 = (text) => createHash("sha256").update(text).digest("hex");
 const hash = "a".repeat(64);
-const plan = JSON.stringify(
-  Array.from({ length: 5 }, (_, i) => ({ block_id: "stills", pair_id: `still-${i}`, left: "pa", right: "mc", left_sha256: hash, right_sha256: hash })),
-);
+const plan = JSON.stringify(Array.from({ length: 5 }, (_, i) => ({ block_id: "stills", pair_id: `still-${i}`, left: "pa", right: "mc", left_sha256: hash, right_sha256: hash })));
 const begin = db.prepare("INSERT INTO sessions VALUES (?, ?, ?, NULL)");
 const consent = db.prepare("UPDATE sessions SET consented_at = ? WHERE session_id = ?");
 const find = db.prepare("SELECT token_hash, trials FROM sessions WHERE session_id = ?");

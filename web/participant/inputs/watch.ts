@@ -36,8 +36,7 @@ export class Inputs {
 
   /** Follows all inputs of a window. */
   follow(view: Window): void {
-    const on = <K extends keyof WindowEventMap>(type: K, hear: (event: WindowEventMap[K]) => void) =>
-      view.addEventListener(type, (event) => event.isTrusted && hear(event), { capture: true });
+    const on = <K extends keyof WindowEventMap>(type: K, hear: (event: WindowEventMap[K]) => void) => view.addEventListener(type, (event) => event.isTrusted && hear(event), { capture: true });
     on("keydown", (event) => this.#keyDown(event));
     on("keyup", (event) => {
       const at = when(event);

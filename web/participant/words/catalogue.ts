@@ -1,5 +1,5 @@
 /** A catalogue as the check reads it: which messages it has, and what arguments each takes. */
-import { FluentParser, type Message, Visitor, type Junk, type VariableReference } from "@fluent/syntax";
+import { FluentParser, type Junk, type Message, type VariableReference, Visitor } from "@fluent/syntax";
 
 /** Names of arguments by message; `faults` are what could not be read. */
 export type Catalogue = Map<string, Set<string>>;
@@ -46,6 +46,14 @@ const list = (args: Set<string>) => (args.size === 0 ? "nothing" : [...args].sor
 
 /** The messages' types, as a declaration file. */
 export function types(catalogue: Catalogue): string {
-  const line = ([id, args]: [string, Set<string>]) => `  "${id}": ${args.size === 0 ? "null" : `{ ${[...args].sort().map((name) => `${name}: string | number`).join("; ")} }`};`;
+  const line = ([id, args]: [string, Set<string>]) =>
+    `  "${id}": ${
+      args.size === 0
+        ? "null"
+        : `{ ${[...args]
+            .sort()
+            .map((name) => `${name}: string | number`)
+            .join("; ")} }`
+    };`;
   return `// Made from en.ftl by \`npm run check\`; not committed.\nexport interface Messages {\n${[...catalogue].map(line).join("\n")}\n}\n`;
 }

@@ -4,10 +4,15 @@ import { faults, read, types } from "./catalogue.ts";
 
 const here = new URL("./", import.meta.url);
 const participant = new URL("../", import.meta.url);
-const files = (folder: URL, end: string) => readdirSync(folder, { recursive: true, encoding: "utf8" }).filter((file) => file.endsWith(end)).sort();
+const files = (folder: URL, end: string) =>
+  readdirSync(folder, { recursive: true, encoding: "utf8" })
+    .filter((file) => file.endsWith(end))
+    .sort();
 
 const catalogues = Object.fromEntries(files(here, ".ftl").map((file) => [file.replace(".ftl", ""), read(readFileSync(new URL(file, here), "utf8"))]));
-const sources = files(participant, ".ts").filter((file) => !file.startsWith("words")).map((file) => readFileSync(new URL(file, participant), "utf8"));
+const sources = files(participant, ".ts")
+  .filter((file) => !file.startsWith("words"))
+  .map((file) => readFileSync(new URL(file, participant), "utf8"));
 // What is said before the page is there is put into it as it is built.
 sources.push(readFileSync(new URL("../../build.mjs", import.meta.url), "utf8"));
 

@@ -47,7 +47,11 @@ test("in Firefox: the console", { skip: !hasFirefox }, async (t) => {
   await firefox.until(there, "login-password");
   await look("sign in");
   await firefox.evaluate(() => fetch("/api/v1/auth/session", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify({ password: "wayang" }) }).then(() => true));
-  for (const [path, ready] of [["", "table"], [`/${study.id}`, '[data-testid="report-photographs"]'], ["/empty", ".empty"]]) {
+  for (const [path, ready] of [
+    ["", "table"],
+    [`/${study.id}`, '[data-testid="report-photographs"]'],
+    ["/empty", ".empty"],
+  ]) {
     await firefox.goto(`${mock.url}/console/studies${path}`);
     await firefox.until((selector) => document.querySelector(selector) !== null, ready);
     await look(`studies${path}`);

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Line } from "../line.ts";
-import { Maker, study } from "../mock-study.ts";
 import { startMock } from "../mock-server.ts";
+import { Maker, study } from "../mock-study.ts";
 import { PICTURES } from "../samples.ts";
 import { display } from "./display.mjs";
 import { hasFirefox, launchFirefox } from "./firefox.mjs";
@@ -69,10 +69,16 @@ async function over(t, rate, { stuff = pair(), spoil = "", ranges = true, sends 
 /** Holds what was on the screen to the log: each frame that it says was drawn has its own code. The film goes on a little after the choice. */
 function rightFrames({ codes }, { draws }) {
   assert.ok(codes.length >= draws.length && draws.length > 0, `${codes.length} drawn, ${draws.length} logged`);
-  assert.deepEqual(codes.slice(0, draws.length), draws.map(([frame]) => 4 * (frame % PICTURES.length)));
+  assert.deepEqual(
+    codes.slice(0, draws.length),
+    draws.map(([frame]) => 4 * (frame % PICTURES.length)),
+  );
 }
 
-for (const [mbits, least, most] of [[9, 2.1e6, 2.5e6], [1.6, 3.6e6, 4e6]]) {
+for (const [mbits, least, most] of [
+  [9, 2.1e6, 2.5e6],
+  [1.6, 3.6e6, 4e6],
+]) {
   test(`a pair such as the built-in one begins after ${most / 1e6} MB at most on a line of ${mbits} Mbit/s, and misses no frame`, async (t) => {
     const v = await over(t, mbits * MBIT);
     await begin(v, "1");

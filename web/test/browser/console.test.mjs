@@ -34,7 +34,9 @@ test("the full report and the paper come with their exact numbers and described 
   assert.equal(await block.getAttribute("data-g"), "0.726");
   assert.equal(await v.hook("paper-animation-mc").getAttribute("data-t"), "-3.98348229826");
   await v.page.getByText("No whole number of participants from 25 to 40 gives −3.293").waitFor();
-  const described = await v.page.locator("svg.plot").evaluateAll((all) => all.map((svg) => svg.querySelector("title")?.textContent !== "" && (svg.querySelector("desc")?.textContent ?? "").length > 20));
+  const described = await v.page
+    .locator("svg.plot")
+    .evaluateAll((all) => all.map((svg) => svg.querySelector("title")?.textContent !== "" && (svg.querySelector("desc")?.textContent ?? "").length > 20));
   assert.ok(described.length >= 4 && described.every(Boolean), JSON.stringify(described));
   // A study without the paper's name has no such section, and an empty one says what is to come.
   await v.page.goto(`${v.mock.url}/console/studies/empty`);
@@ -116,7 +118,10 @@ test("by keyboard: another version, one pooled with it; the address keeps it, li
   assert.equal(hrefs.length, 10);
   for (const href of hrefs) assert.ok(href.includes(`/versions/${versions.before}/`) && href.endsWith(`?with=${versions.pilot}`), href);
   await v.hook("report-stills").waitFor();
-  assert.ok(v.mock.log.some((call) => call.path.endsWith(`/versions/${versions.before}/report`) && call.query === `?with=${versions.pilot}`), "the report is of the same answers");
+  assert.ok(
+    v.mock.log.some((call) => call.path.endsWith(`/versions/${versions.before}/report`) && call.query === `?with=${versions.pilot}`),
+    "the report is of the same answers",
+  );
 
   await v.page.reload();
   await banner.waitFor();

@@ -30,7 +30,9 @@ export function contrasts() {
   document.body.append(paper);
   const canvas = over(channels(getComputedStyle(paper).backgroundColor), [255, 255, 255]);
   paper.remove();
-  return [...document.querySelectorAll('button, a[href], summary, input:not([type="radio"], [type="checkbox"]), select, [role="button"], #notice, #ribbon span, #boot h1, .page [role="status"]')].flatMap((element) => {
+  return [
+    ...document.querySelectorAll('button, a[href], summary, input:not([type="radio"], [type="checkbox"]), select, [role="button"], #notice, #ribbon span, #boot h1, .page [role="status"]'),
+  ].flatMap((element) => {
     const words = (element.innerText || element.value || "").trim();
     if (words === "" || !element.checkVisibility({ visibilityProperty: true, opacityProperty: true })) return [];
     const chain = [];

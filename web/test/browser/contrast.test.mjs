@@ -12,7 +12,10 @@ const LEAST_EDGE = 3;
 
 const faint = (found) => found.filter(({ contrast }) => contrast < LEAST).map(({ words, state, contrast }) => `${words} (${state}): ${contrast.toFixed(2)}`);
 /** A disabled button need not be told from the page; its words still must be read. */
-const unseen = (found) => found.filter(({ kind, edge, state }) => state !== "disabled" && /\b(action|primary)\b/.test(kind) && edge < LEAST_EDGE).map(({ words, state, edge }) => `${words} (${state}): edge ${edge.toFixed(2)}`);
+const unseen = (found) =>
+  found
+    .filter(({ kind, edge, state }) => state !== "disabled" && /\b(action|primary)\b/.test(kind) && edge < LEAST_EDGE)
+    .map(({ words, state, edge }) => `${words} (${state}): edge ${edge.toFixed(2)}`);
 
 /** How a browser may be asked to colour pages. */
 const schemes = ["light", "dark"].flatMap((colorScheme) => ["none", "active"].map((forcedColors) => ({ colorScheme, forcedColors })));

@@ -24,7 +24,10 @@ test("losing the focus without being hidden, going out of view and coming back a
   await position(v.page, 2);
   const [first, second] = rows(v.mock);
   const told = of(first, "blur", "focus", "hidden", "visible");
-  assert.deepEqual(told.map(({ event }) => event), ["blur", "focus", "hidden", "visible"]);
+  assert.deepEqual(
+    told.map(({ event }) => event),
+    ["blur", "focus", "hidden", "visible"],
+  );
   for (const [i, { time_ms }] of told.entries()) assert.ok(time_ms > 0 && time_ms < first.rt && time_ms >= (told[i - 1]?.time_ms ?? 0), JSON.stringify(told));
   assert.deepEqual(of(second, "blur", "focus", "hidden", "visible"), [], "each is told once");
 });
@@ -49,7 +52,13 @@ test("a window that changes is logged with how the stimuli stood from then on, a
   assert.deepEqual(first.at_onset, { scale: 1, css_width_px: 592, arrangement: "side", device_pixel_ratio: 1, viewport: [1280, 800] });
   assert.deepEqual([first.arrangement, first.viewport, first.css_width_px], ["stack", [500, 844], width]);
   const resizes = of(first, "resize");
-  assert.deepEqual(resizes.map(({ viewport, arrangement, css_width_px }) => [viewport, arrangement, css_width_px]), [[[390, 844], "stack", 370], [[500, 844], "stack", width]]);
+  assert.deepEqual(
+    resizes.map(({ viewport, arrangement, css_width_px }) => [viewport, arrangement, css_width_px]),
+    [
+      [[390, 844], "stack", 370],
+      [[500, 844], "stack", width],
+    ],
+  );
   assert.deepEqual([second.geometry_changed, second.at_onset, of(second, "resize")], [0, undefined, []]);
 });
 
@@ -79,8 +88,14 @@ test("full screen and the way a display is held are logged", async (t) => {
   await v.page.keyboard.press("ArrowLeft");
   await position(v.page, 1);
   const [row] = rows(v.mock);
-  assert.deepEqual(of(row, "orientation").map(({ orientation }) => orientation), ["landscape-primary"]);
-  assert.deepEqual(of(row, "fullscreen_enter", "fullscreen_exit").map(({ event }) => event), ["fullscreen_enter", "fullscreen_exit"]);
+  assert.deepEqual(
+    of(row, "orientation").map(({ orientation }) => orientation),
+    ["landscape-primary"],
+  );
+  assert.deepEqual(
+    of(row, "fullscreen_enter", "fullscreen_exit").map(({ event }) => event),
+    ["fullscreen_enter", "fullscreen_exit"],
+  );
   assert.equal(row.geometry_changed, 1);
 });
 

@@ -24,7 +24,11 @@ for (const hz of [60, 75, 120, 144]) {
     const period = 1000 / hz;
     assert.ok(Math.abs(log.refresh_hz - hz) < 0.01 && Math.abs(row.refresh_hz - hz) < 0.01, `${log.refresh_hz} Hz`);
     for (const [frame, at] of log.draws) assert.ok(Math.abs(at - (1000 * frame) / 30) <= period / 2 + 0.01, `frame ${frame} after ${at} ms`);
-    assert.deepEqual(log.draws.map(([frame]) => frame), log.draws.map((_, i) => i), "each frame, in order, through the loops");
+    assert.deepEqual(
+      log.draws.map(([frame]) => frame),
+      log.draws.map((_, i) => i),
+      "each frame, in order, through the loops",
+    );
     assert.ok(log.draws.length >= 60, `${log.draws.length} frames`);
     assert.deepEqual([row.missed_frames, log.missed_frames, log.skipped, log.shown], [0, 0, 0, log.draws.length]);
   });

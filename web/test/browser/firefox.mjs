@@ -10,7 +10,13 @@ const executable = process.env.FIREFOX ?? ["/usr/bin/firefox-esr", "/usr/bin/fir
 /** Whether there is a Firefox on this machine. */
 export const hasFirefox = executable !== undefined;
 
-const PREFERENCES = { "marionette.port": 0, "browser.shell.checkDefaultBrowser": false, "browser.aboutwelcome.enabled": false, "datareporting.policy.dataSubmissionEnabled": false, "app.update.enabled": false };
+const PREFERENCES = {
+  "marionette.port": 0,
+  "browser.shell.checkDefaultBrowser": false,
+  "browser.aboutwelcome.enabled": false,
+  "datareporting.policy.dataSubmissionEnabled": false,
+  "app.update.enabled": false,
+};
 
 /** Starts a Firefox on fresh settings, with `preferences` beside those that keep it quiet. */
 export async function launchFirefox({ preferences = {}, width = 1280, height = 800 } = {}) {
@@ -92,7 +98,16 @@ function marionette(port) {
 
 /** What tests do with a page. */
 function driver(send) {
-  const evaluate = async (body, ...args) => (await send("WebDriver:ExecuteAsyncScript", { script: `const done = arguments[arguments.length - 1]; Promise.resolve((${body})(...[...arguments].slice(0, -1))).then(done);`, args, scriptTimeout: 60_000, newSandbox: false, sandbox: null })).value;
+  const evaluate = async (body, ...args) =>
+    (
+      await send("WebDriver:ExecuteAsyncScript", {
+        script: `const done = arguments[arguments.length - 1]; Promise.resolve((${body})(...[...arguments].slice(0, -1))).then(done);`,
+        args,
+        scriptTimeout: 60_000,
+        newSandbox: false,
+        sandbox: null,
+      })
+    ).value;
   const until = async (body, ...args) => {
     for (let tries = 0; tries < 600; tries++) {
       const found = await evaluate(body, ...args);
@@ -112,7 +127,10 @@ function driver(send) {
     }, testid);
   const perform = (actions) => send("WebDriver:PerformActions", { actions });
   const pointer = (actions, pointerType = "mouse") => perform([{ type: "pointer", id: pointerType, parameters: { pointerType }, actions }]);
-  const press = [{ type: "pointerDown", button: 0 }, { type: "pointerUp", button: 0 }];
+  const press = [
+    { type: "pointerDown", button: 0 },
+    { type: "pointerUp", button: 0 },
+  ];
   return {
     goto: (url) => send("WebDriver:Navigate", { url }),
     evaluate,
@@ -126,7 +144,18 @@ function driver(send) {
       await this.presses(await middle(testid), [0]);
     },
     /** A key, such as `\uE012` for ←, down and up after each of the `pauses`, ms. */
-    keys: (value, pauses) => perform([{ type: "key", id: "keyboard", actions: pauses.flatMap((duration) => [{ type: "pause", duration }, { type: "keyDown", value }, { type: "keyUp", value }]) }]),
+    keys: (value, pauses) =>
+      perform([
+        {
+          type: "key",
+          id: "keyboard",
+          actions: pauses.flatMap((duration) => [
+            { type: "pause", duration },
+            { type: "keyDown", value },
+            { type: "keyUp", value },
+          ]),
+        },
+      ]),
     screenshot: async () => Buffer.from((await send("WebDriver:TakeScreenshot", { full: false })).value, "base64"),
   };
 }

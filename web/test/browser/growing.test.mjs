@@ -4,7 +4,13 @@ import { test } from "node:test";
 import { answer, begin, position, stored, visit } from "./visit.mjs";
 
 const grow = { start: 1, most: 43 };
-const all = [[0, "left"], [1, "left"], [2, "left"], [3, "left"], [4, "left"]];
+const all = [
+  [0, "left"],
+  [1, "left"],
+  [2, "left"],
+  [3, "left"],
+  [4, "left"],
+];
 
 test("a plan that grows by one trial an answer comes to its end, and its length is promised only then", async (t) => {
   const v = await visit(t, { grow });
@@ -15,7 +21,10 @@ test("a plan that grows by one trial an answer comes to its end, and its length 
   await v.hook("completion-code").waitFor();
   assert.deepEqual(stored(v.mock), [all]);
   const calls = v.mock.log.filter((call) => call.method !== "GET" || call.path.includes("/sessions/"));
-  assert.deepEqual(calls.filter((call) => call.method === "PUT").map((call) => call.query), ["1", "2", "3", "4", "5"].map((known) => `?known=${known}&plan=0`));
+  assert.deepEqual(
+    calls.filter((call) => call.method === "PUT").map((call) => call.query),
+    ["1", "2", "3", "4", "5"].map((known) => `?known=${known}&plan=0`),
+  );
   assert.equal(calls.filter((call) => call.method === "GET").length, 0, "acknowledgements bring the trials: nothing else is asked");
   assert.equal(calls.filter((call) => call.path.endsWith("/completion")).length, 1, "completion is asked for once, at the end");
 });

@@ -1,10 +1,10 @@
 // Inputs that belong to what was on the screen before, in Chromium and in Firefox.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { startMock } from "../mock-server.ts";
 import { material, study } from "../mock-study.ts";
 import { hasFirefox, launchFirefox } from "./firefox.mjs";
 import { begin, bundle, painted, position, rows, stored, visit } from "./visit.mjs";
-import { startMock } from "../mock-server.ts";
 
 const EDITION_2 = { min_visible_ms: 200, min_gap_ms: 500 };
 const EDITION_1 = { min_visible_ms: 0, min_gap_ms: 0 };
@@ -75,12 +75,20 @@ for (const pointer of ["mouse", "touch", "pen"]) {
       if (pointer !== "touch") await press(v, at, 2, pointer);
       await v.hook("choice-right").click();
       await ready(v, 2);
-      assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "right"]]]);
+      assert.deepEqual(stored(v.mock), [
+        [
+          [0, "left"],
+          [1, "right"],
+        ],
+      ]);
       const [first, second] = rows(v.mock);
       assert.deepEqual([first.input, first.events], [pointer, undefined]);
       // The second press may have come between the pairs, where there is nothing to press.
       const ignored = (second.events ?? []).filter(({ event }) => event === "ignored");
-      assert.ok(ignored.every(({ choice, input, reason }) => choice === "left" && input === pointer && ["double", "early", "gap", "answered"].includes(reason)), JSON.stringify(ignored));
+      assert.ok(
+        ignored.every(({ choice, input, reason }) => choice === "left" && input === pointer && ["double", "early", "gap", "answered"].includes(reason)),
+        JSON.stringify(ignored),
+      );
       if (pointer !== "touch") assert.deepEqual([ignored.at(-1).reason, ignored.at(-1).time_ms > 0], ["double", true]);
       for (const row of [first, second]) assert.ok(row.rt >= 200 && row.min_visible_ms >= 200, JSON.stringify(row));
     });
@@ -88,7 +96,12 @@ for (const pointer of ["mouse", "touch", "pen"]) {
 }
 
 test("without rules the second of two quick presses answers nothing either; a later touch does", async (t) => {
-  for (const [pointer, pause, answers] of [["touch", 0, 1], ["touch", 100, 1], ["mouse", 0, 1], ["touch", 600, 2]]) {
+  for (const [pointer, pause, answers] of [
+    ["touch", 0, 1],
+    ["touch", 100, 1],
+    ["mouse", 0, 1],
+    ["touch", 600, 2],
+  ]) {
     const v = await visit(t, { response: EDITION_1, options: { viewport: { width: 1280, height: 800 }, hasTouch: true }, spoil: slowly });
     await begin(v);
     const at = await middle(v, "choice-left");
@@ -111,7 +124,10 @@ for (const response of [EDITION_1, EDITION_2]) {
       await v.page.keyboard.press(i % 2 === 0 ? "ArrowLeft" : "ArrowRight");
     }
     await v.hook("completion-code").waitFor();
-    assert.deepEqual(stored(v.mock)[0].map(([, choice]) => choice), ["left", "right", "left", "right", "left"]);
+    assert.deepEqual(
+      stored(v.mock)[0].map(([, choice]) => choice),
+      ["left", "right", "left", "right", "left"],
+    );
     assert.deepEqual(reasons(v.mock), []);
     const states = await v.page.evaluate(() => globalThis.states);
     assert.deepEqual(states, [...Array(5).fill(["no pair", "seen", "offered", "seen"]).flat(), "no pair"]);
@@ -134,7 +150,12 @@ test("Chromium: a held key answers one pair, and answers the next once it was le
   await v.page.keyboard.up("ArrowLeft");
   await v.page.keyboard.press("ArrowRight");
   await ready(v, 2);
-  assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "right"]]]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "left"],
+      [1, "right"],
+    ],
+  ]);
   const said = reasons(v.mock);
   assert.ok(said.includes("repeat") && said.includes("held"), String(said));
 });
@@ -156,13 +177,19 @@ test("Chromium: repeats that come as pairs of down and up answer one pair", asyn
   const [, second] = rows(v.mock);
   const ignored = second.events.filter(({ event }) => event === "ignored");
   assert.ok(ignored.length > 10 && ignored.length <= 100, String(ignored.length));
-  assert.ok(ignored.every(({ input, reason }) => input === "keyboard" && ["repeat", "answered"].includes(reason)), JSON.stringify(ignored[0]));
+  assert.ok(
+    ignored.every(({ input, reason }) => input === "keyboard" && ["repeat", "answered"].includes(reason)),
+    JSON.stringify(ignored[0]),
+  );
 });
 
 test("Chromium: a key held on a focused picture answers one pair", async (t) => {
   const v = await visit(t, { response: EDITION_2 });
   await begin(v);
-  for (const [i, key] of [[0, "Enter"], [1, "Space"]]) {
+  for (const [i, key] of [
+    [0, "Enter"],
+    [1, "Space"],
+  ]) {
     await ready(v, i);
     await v.hook("choice-right").focus();
     for (let n = 0; n < 20; n++) {
@@ -172,8 +199,16 @@ test("Chromium: a key held on a focused picture answers one pair", async (t) => 
     await v.page.keyboard.up(key);
     await ready(v, i + 1);
   }
-  assert.deepEqual(stored(v.mock), [[[0, "right"], [1, "right"]]]);
-  assert.deepEqual(rows(v.mock).map((row) => row.input), ["keyboard", "keyboard"]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "right"],
+      [1, "right"],
+    ],
+  ]);
+  assert.deepEqual(
+    rows(v.mock).map((row) => row.input),
+    ["keyboard", "keyboard"],
+  );
 });
 
 test("Chromium: what a script presses is no answer", async (t) => {
@@ -243,7 +278,10 @@ test("Chromium: time that the page was hidden is not time that the stimulus was 
   await position(v.page, 1);
   const [row] = rows(v.mock);
   assert.ok(row.hidden_ms >= 3100 && row.min_visible_ms >= 3000, JSON.stringify([row.hidden_ms, row.min_visible_ms]));
-  assert.deepEqual(row.events.map(({ event }) => event), ["hidden", "visible", "ignored"]);
+  assert.deepEqual(
+    row.events.map(({ event }) => event),
+    ["hidden", "visible", "ignored"],
+  );
 });
 
 /** A participant in Firefox, at the first trial. */
@@ -257,7 +295,11 @@ async function inFirefox(t, response, stuff = material()) {
   await firefox.goto(`${mock.url}/study/${study.id}`);
   await firefox.click("consent-agree");
   await firefox.click("start");
-  const trial = (i) => firefox.until((text) => document.querySelector(".position")?.textContent === text && document.querySelector('.pair.shown [data-testid="choice-left"]:not([aria-disabled])') !== null, `${i + 1} of ${stuff.trials.length}`);
+  const trial = (i) =>
+    firefox.until(
+      (text) => document.querySelector(".position")?.textContent === text && document.querySelector('.pair.shown [data-testid="choice-left"]:not([aria-disabled])') !== null,
+      `${i + 1} of ${stuff.trials.length}`,
+    );
   await trial(0);
   return { mock, firefox, trial };
 }
@@ -269,7 +311,12 @@ test("Firefox: double clicks, double touches, held and repeating keys each answe
   assert.deepEqual(stored(mock), [[[0, "left"]]]);
   await firefox.presses(await firefox.middle("choice-right"), [0, 200], "touch");
   await trial(2);
-  assert.deepEqual(stored(mock), [[[0, "left"], [1, "right"]]]);
+  assert.deepEqual(stored(mock), [
+    [
+      [0, "left"],
+      [1, "right"],
+    ],
+  ]);
   await firefox.keys(ARROW_LEFT, [0, ...Array(60).fill(30)]);
   await trial(3);
   assert.equal(rows(mock).length, 3);
@@ -277,7 +324,15 @@ test("Firefox: double clicks, double touches, held and repeating keys each answe
   await firefox.keys(ENTER, [0, ...Array(30).fill(30)]);
   await trial(4);
   const answers = rows(mock);
-  assert.deepEqual(answers.map(({ choice, input }) => [choice, input]), [["left", "mouse"], ["right", "touch"], ["left", "keyboard"], ["right", "keyboard"]]);
+  assert.deepEqual(
+    answers.map(({ choice, input }) => [choice, input]),
+    [
+      ["left", "mouse"],
+      ["right", "touch"],
+      ["left", "keyboard"],
+      ["right", "keyboard"],
+    ],
+  );
   for (const { rt } of answers) assert.ok(rt >= 200, String(rt));
   assert.ok(reasons(mock).length >= 20, String(reasons(mock).length));
 });
@@ -289,7 +344,12 @@ test("Firefox: without a gap to keep, repeats that come as pairs of down and up 
   assert.deepEqual(stored(mock), [[[0, "left"]]]);
   await firefox.keys(ARROW_LEFT, [300]);
   await trial(2);
-  assert.deepEqual(stored(mock), [[[0, "left"], [1, "left"]]]);
+  assert.deepEqual(stored(mock), [
+    [
+      [0, "left"],
+      [1, "left"],
+    ],
+  ]);
 });
 
 test("Firefox: without rules a double touch answers one pair, and two touches two", { skip: !hasFirefox }, async (t) => {

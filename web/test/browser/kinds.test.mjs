@@ -27,7 +27,14 @@ test("a study of two kinds explains both and shows both", async (t) => {
   await answer(v, 1, 2, "second", "3");
   await answer(v, 2, 3, "left", "3");
   await v.hook("completion-code").waitFor();
-  assert.deepEqual(rows(v.mock).map((row) => [row.trial_type, row.choice]), [["two-alternative", "right"], ["two-interval", "second"], ["two-alternative", "left"]]);
+  assert.deepEqual(
+    rows(v.mock).map((row) => [row.trial_type, row.choice]),
+    [
+      ["two-alternative", "right"],
+      ["two-interval", "second"],
+      ["two-alternative", "left"],
+    ],
+  );
 });
 
 test("a study of one kind doesn't name it", async (t) => {
@@ -89,14 +96,18 @@ test("a pen is a pen", async (t) => {
   const press = async (pointerType) => {
     const box = await v.hook("choice-left").boundingBox();
     const [x, y] = [box.x + 40, box.y + 40];
-    for (const type of ["mouseMoved", "mousePressed", "mouseReleased"]) await cdp.send("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", clickCount: 1, pointerType });
+    for (const type of ["mouseMoved", "mousePressed", "mouseReleased"])
+      await cdp.send("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", clickCount: 1, pointerType });
   };
   await press("pen");
   await position(v.page, 1);
   await v.hook("choice-left").waitFor({ state: "visible" });
   await press("mouse");
   await position(v.page, 2);
-  assert.deepEqual(rows(v.mock).map((row) => row.input), ["pen", "mouse"]);
+  assert.deepEqual(
+    rows(v.mock).map((row) => row.input),
+    ["pen", "mouse"],
+  );
 });
 
 test("what was on the screen is stored: width, arrangement, and how long it was seen", async (t) => {
@@ -120,8 +131,27 @@ test("what was on the screen is stored: width, arrangement, and how long it was 
   assert.deepEqual([second.hidden_ms, second.min_visible_ms], [0, second.rt]);
   // An answer has these columns in this order, the additions apart.
   const added = new Set(["stimulus_size", "css_width_px", "min_visible_ms", "geometry_changed", "events"]);
-  const before = ["choice", "rt", "onset", "input", "scale", "arrangement", "device_pixel_ratio", "viewport", "refresh_hz", "hidden_ms", "time_elapsed", "trial_type", "plugin_version", "reload_count", "timestamp"];
-  assert.deepEqual(Object.keys(first).filter((column) => !added.has(column)), before);
+  const before = [
+    "choice",
+    "rt",
+    "onset",
+    "input",
+    "scale",
+    "arrangement",
+    "device_pixel_ratio",
+    "viewport",
+    "refresh_hz",
+    "hidden_ms",
+    "time_elapsed",
+    "trial_type",
+    "plugin_version",
+    "reload_count",
+    "timestamp",
+  ];
+  assert.deepEqual(
+    Object.keys(first).filter((column) => !added.has(column)),
+    before,
+  );
 });
 
 test("scale and width are those that the participant saw, pinch zoom included", async (t) => {
@@ -149,7 +179,10 @@ async function simulate(page, kind, mode) {
   return page.evaluate(([kind, mode]) => globalThis.simulate(kind, mode), [kind, mode]);
 }
 
-for (const [kind, roles] of [["two-alternative", ["left", "right"]], ["two-interval", ["first", "second"]]]) {
+for (const [kind, roles] of [
+  ["two-alternative", ["left", "right"]],
+  ["two-interval", ["first", "second"]],
+]) {
   for (const mode of ["data-only", "visual"]) {
     test(`${kind} simulates itself, ${mode}`, async (t) => {
       const v = await visit(t);
@@ -159,7 +192,11 @@ for (const [kind, roles] of [["two-alternative", ["left", "right"]], ["two-inter
         assert.ok(roles.includes(row.choice) && row.rt > 0 && row.scale === 1 && row.css_width_px === 64, JSON.stringify(row));
         if (kind === "two-interval") assert.ok(row.shown_frames.first >= 3 && row.shown_ms.first > 40 && row.requested_ms.first === 50, JSON.stringify(row));
       }
-      assert.deepEqual(told, data.map((row) => row.choice), "the answer is handed on at the choice");
+      assert.deepEqual(
+        told,
+        data.map((row) => row.choice),
+        "the answer is handed on at the choice",
+      );
     });
   }
 }

@@ -31,15 +31,28 @@ test("the browser's language is read, the switch changes it before consent, and 
 test("in Arabic the text runs from right to left, and left stays left", async (t) => {
   const v = await visit(t, { query: "?lang=ar", stuff: { ...material(), trials: material().trials.slice(0, 2) } });
   assert.deepEqual((await v.hook("consent-agree").waitFor(), await root(v.page)), ["ar", "rtl", study.translations.ar.title]);
-  const heading = await v.page.locator("h1").evaluate((h1) => ({ right: h1.getBoundingClientRect().right, text: (() => { const range = document.createRange(); range.selectNodeContents(h1); return range.getBoundingClientRect().right; })() }));
+  const heading = await v.page.locator("h1").evaluate((h1) => ({
+    right: h1.getBoundingClientRect().right,
+    text: (() => {
+      const range = document.createRange();
+      range.selectNodeContents(h1);
+      return range.getBoundingClientRect().right;
+    })(),
+  }));
   assert.ok(Math.abs(heading.right - heading.text) < 2, "the text begins on the right");
   await v.hook("consent-agree").click();
   await v.hook("start").waitFor();
   const keys = await v.page.locator(".keys kbd").evaluateAll((all) => all.map((kbd) => [kbd.textContent, kbd.getBoundingClientRect().x]));
-  assert.deepEqual(keys.sort((a, b) => a[1] - b[1]).map(([key]) => key), ["←", "→"]);
+  assert.deepEqual(
+    keys.sort((a, b) => a[1] - b[1]).map(([key]) => key),
+    ["←", "→"],
+  );
   await v.hook("start").click();
   const plan = v.mock.stuff.trials;
-  for (const [i, side, key] of [[0, "left", "ArrowLeft"], [1, "right", "ArrowRight"]]) {
+  for (const [i, side, key] of [
+    [0, "left", "ArrowLeft"],
+    [1, "right", "ArrowRight"],
+  ]) {
     await v.page.locator(`.pair.shown [data-sha256="${plan[i].shown.left.sha256}"]:not([aria-disabled])`).waitFor();
     const at = async (one) => ({ x: (await v.hook(`choice-${one}`).boundingBox()).x, sha256: await v.hook(`choice-${one}`).getAttribute("data-sha256") });
     const [left, right] = [await at("left"), await at("right")];
@@ -51,7 +64,10 @@ test("in Arabic the text runs from right to left, and left stays left", async (t
   }
   const code = v.hook("completion-code");
   await code.waitFor();
-  assert.deepEqual(rows(v.mock).map(({ choice }) => choice), ["left", "right"]);
+  assert.deepEqual(
+    rows(v.mock).map(({ choice }) => choice),
+    ["left", "right"],
+  );
   assert.deepEqual([await code.getAttribute("translate"), await code.getAttribute("dir")], ["no", "ltr"]);
   assert.equal(session(v.mock).display.language, "ar");
 });
@@ -88,7 +104,7 @@ test("addresses in a study's texts are links that lead beside it, and nothing el
   assert.match(await v.page.locator(".text").innerText(), /mehr steht auf https:\/\/example\.org\/schatten\.\n/);
 });
 
-for (const [name, { options, query }] of Object.entries({ "English": { options: sizes.desktop, query: "" }, "Arabic": { options: sizes.desktop, query: "?lang=ar" } })) {
+for (const [name, { options, query }] of Object.entries({ English: { options: sizes.desktop, query: "" }, Arabic: { options: sizes.desktop, query: "?lang=ar" } })) {
   test(`at 1280 by 800 the action of every page is in sight, however long the text: ${name}`, async (t) => {
     const long = Array.from({ length: 40 }, () => "A paragraph that is long enough to take its line and more, as consent forms of real boards of ethics do.");
     const stuff = { ...material(), trials: material().trials.slice(0, 1) };

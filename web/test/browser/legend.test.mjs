@@ -29,7 +29,14 @@ test("beside each other it is ← and →, below each other ↑ and ↓, and a w
     await v.page.keyboard.press(key);
   }
   await position(v.page, 4);
-  assert.deepEqual(stored(v.mock), [[[0, "right"], [1, "left"], [2, "right"], [3, "left"]]]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "right"],
+      [1, "left"],
+      [2, "right"],
+      [3, "left"],
+    ],
+  ]);
 });
 
 test("beside each other ↑ and ↓ mean nothing", async (t) => {
@@ -42,7 +49,10 @@ test("beside each other ↑ and ↓ mean nothing", async (t) => {
   assert.deepEqual(stored(v.mock), [[[0, "right"]]]);
 });
 
-for (const [stuff, touch] of [[undefined, "Touch the picture that you choose."], [intervals(), "Touch the button of the picture that you choose."]]) {
+for (const [stuff, touch] of [
+  [undefined, "Touch the picture that you choose."],
+  [intervals(), "Touch the button of the picture that you choose."],
+]) {
   test(`a device without keys is told to touch: "${touch}"`, async (t) => {
     const v = await visit(t, { options: sizes.phone, ...(stuff && { stuff }) });
     await instructions(v);

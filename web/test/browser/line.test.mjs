@@ -66,7 +66,15 @@ test("a lost acknowledgement costs nothing and doubles nothing", async (t) => {
   await begin(v);
   await answer(v, 0, 5);
   await v.hook("completion-code").waitFor();
-  assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"], [2, "left"], [3, "left"], [4, "left"]]]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "left"],
+      [1, "left"],
+      [2, "left"],
+      [3, "left"],
+      [4, "left"],
+    ],
+  ]);
 });
 
 test("a page that was frozen while its plan went to somebody else shows the trials of the new one, and stores no answer to the old", async (t) => {
@@ -80,7 +88,10 @@ test("a page that was frozen while its plan went to somebody else shows the tria
   await answered;
   // The refusal may come before the next trial or during it.
   const again = v.page.getByText("other pictures have been chosen for you meanwhile");
-  const next = position(v.page, 1).then(() => true, () => false);
+  const next = position(v.page, 1).then(
+    () => true,
+    () => false,
+  );
   if (await Promise.race([again.waitFor().then(() => false), next])) await v.hook("choice-left").click();
   await again.waitFor();
   assert.deepEqual(stored(v.mock), [[]]);
@@ -88,9 +99,20 @@ test("a page that was frozen while its plan went to somebody else shows the tria
   assert.deepEqual(await pictures(), [right, left], "the mirror's");
   await answer(v, 0, 5, "right");
   await v.hook("completion-code").waitFor();
-  assert.deepEqual(stored(v.mock), [[[0, "right"], [1, "right"], [2, "right"], [3, "right"], [4, "right"]]]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "right"],
+      [1, "right"],
+      [2, "right"],
+      [3, "right"],
+      [4, "right"],
+    ],
+  ]);
   const sent = v.mock.log.filter(({ method }) => method === "PUT").map(({ query }) => new URLSearchParams(query).get("plan"));
-  assert.deepEqual(sent.filter((plan) => plan !== "0"), ["1", "1", "1", "1", "1"]);
+  assert.deepEqual(
+    sent.filter((plan) => plan !== "0"),
+    ["1", "1", "1", "1", "1"],
+  );
 });
 
 test("a trial whose answer the server refuses is taken again; refused once more it is kept and said, and no code is shown", async (t) => {
@@ -103,14 +125,22 @@ test("a trial whose answer the server refuses is taken again; refused once more 
   const seen = [];
   const missing = v.page.getByText("One answer could not be stored");
   const trial = v.page.locator(".trial:not([data-done])");
-  while (await Promise.race([missing.waitFor().then(() => false), trial.locator(".pair.shown").waitFor().then(() => true)])) {
+  while (
+    await Promise.race([
+      missing.waitFor().then(() => false),
+      trial
+        .locator(".pair.shown")
+        .waitFor()
+        .then(() => true),
+    ])
+  ) {
     seen.push({ at: await trial.locator(".position").textContent(), again: await v.page.getByText("its pictures are here once more. Please choose again.").isVisible() });
     await trial.evaluate((element) => (element.dataset.done = ""));
     await v.hook("choice-left").click();
   }
   assert.deepEqual(seen.map(({ at }) => at).sort(), ["1 of 5", "2 of 5", "2 of 5", "3 of 5", "4 of 5", "5 of 5"]);
   assert.equal(seen.filter(({ at }) => at === "2 of 5")[1].again, true);
-  await v.page.getByText("The answer has a fault. /choice = \"left\": must be otherwise.").waitFor();
+  await v.page.getByText('The answer has a fault. /choice = "left": must be otherwise.').waitFor();
   assert.equal(await v.hook("completion-code").count(), 0);
   refuse = false;
   await v.page.getByRole("button", { name: "Try again" }).click();

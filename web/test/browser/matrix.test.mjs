@@ -1,8 +1,8 @@
 // No dead ends: whatever browser, storage, clock and network do, a visit ends with the code or with a sentence that says what to do.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { material, study } from "../mock-study.ts";
 import { startMock } from "../mock-server.ts";
+import { material, study } from "../mock-study.ts";
 import { hasFirefox, launchFirefox } from "./firefox.mjs";
 import { HURRY, troubles } from "./troubles.mjs";
 import { bundle, visit } from "./visit.mjs";
@@ -19,9 +19,16 @@ const STEPS = ["consent-agree", "start", "choice-left"].map((id) => `[data-testi
 async function through({ page }, says) {
   for (let steps = 0; steps < 400; steps++) {
     if (await page.locator('[data-testid="completion-code"]').count()) return "code";
-    const text = await page.locator("body").innerText().catch(() => "");
+    const text = await page
+      .locator("body")
+      .innerText()
+      .catch(() => "");
     if (says?.test(text)) return text;
-    await page.locator(STEPS).first().click({ timeout: 250, noWaitAfter: true }).catch(() => undefined);
+    await page
+      .locator(STEPS)
+      .first()
+      .click({ timeout: 250, noWaitAfter: true })
+      .catch(() => undefined);
     await page.waitForTimeout(50);
   }
   return `nothing: ${await page.locator("body").innerText()}`;
@@ -35,7 +42,11 @@ for (const { name, spoil = "", fault = () => () => null, says, sessions } of tro
     else assert.match(end, says);
     if (says === undefined) {
       const done = [...v.mock.sessions.values()].filter((session) => session.code !== null);
-      assert.deepEqual(done.map((session) => session.answers.size), [2], "all answers are there");
+      assert.deepEqual(
+        done.map((session) => session.answers.size),
+        [2],
+        "all answers are there",
+      );
     }
     if (sessions !== undefined) assert.equal(v.mock.sessions.size, sessions);
     v.problems.length = 0; // what went wrong is said in the console too
@@ -49,11 +60,14 @@ test("Firefox goes through its share of these", { skip: !hasFirefox }, async (t)
   const firefox = await launchFirefox();
   t.after(() => firefox.close());
   const look = () =>
-    firefox.evaluate((steps) => ({
-      text: document.body?.innerText ?? "",
-      code: document.querySelector('[data-testid="completion-code"]') !== null,
-      step: [...document.querySelectorAll(steps)].find((element) => getComputedStyle(element).visibility === "visible" && element.getAttribute("aria-disabled") !== "true")?.dataset.testid ?? null,
-    }), STEPS);
+    firefox.evaluate(
+      (steps) => ({
+        text: document.body?.innerText ?? "",
+        code: document.querySelector('[data-testid="completion-code"]') !== null,
+        step: [...document.querySelectorAll(steps)].find((element) => getComputedStyle(element).visibility === "visible" && element.getAttribute("aria-disabled") !== "true")?.dataset.testid ?? null,
+      }),
+      STEPS,
+    );
   for (const { name, spoil = "", fault = () => () => null, says } of troubles.filter(({ name }) => IN_FIREFOX.test(name))) {
     await t.test(name, async () => {
       const mock = await startMock({ dist: bundle, stuff: short(), spoil: HURRY + spoil, fault: fault() });

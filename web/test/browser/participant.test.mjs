@@ -14,7 +14,15 @@ test("a whole visit: every answer once, the code only at the end, nothing stored
   assert.equal(await v.hook("completion-code").count(), 0);
   await answer(v, 0, 5);
   assert.equal(await v.hook("completion-code").textContent(), "LAKON-7Q4F");
-  assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"], [2, "left"], [3, "left"], [4, "left"]]]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "left"],
+      [1, "left"],
+      [2, "left"],
+      [3, "left"],
+      [4, "left"],
+    ],
+  ]);
   const [session] = v.mock.sessions.values();
   assert.deepEqual(session.body.params, { PROLIFIC_PID: "p1", STUDY_ID: "s1", SESSION_ID: "x1" });
   assert.equal(await v.page.getByRole("link", { name: "Return to prolific.com" }).count(), 1);
@@ -49,9 +57,18 @@ test("the keyboard alone is enough, and arrows mean sides", async (t) => {
   await v.page.keyboard.press("Enter");
   await position(v.page, 3);
   await v.page.keyboard.press("Alt+ArrowLeft").catch(() => {});
-  assert.deepEqual(stored(v.mock), [[[0, "right"], [1, "left"], [2, "right"]]]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "right"],
+      [1, "left"],
+      [2, "right"],
+    ],
+  ]);
   const [session] = v.mock.sessions.values();
-  assert.deepEqual([0, 2].map((i) => JSON.parse(session.answers.get(i)).input), ["keyboard", "keyboard"]);
+  assert.deepEqual(
+    [0, 2].map((i) => JSON.parse(session.answers.get(i)).input),
+    ["keyboard", "keyboard"],
+  );
 });
 
 test("pictures have their labels, and the page says where it is", async (t) => {
@@ -74,9 +91,20 @@ test("a reload resumes at the next trial; after the end it shows the code again"
   await v.hook("completion-code").waitFor();
   await v.page.reload();
   assert.equal(await v.hook("completion-code").textContent(), "LAKON-7Q4F");
-  assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"], [2, "right"], [3, "right"], [4, "right"]]]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "left"],
+      [1, "left"],
+      [2, "right"],
+      [3, "right"],
+      [4, "right"],
+    ],
+  ]);
   const [session] = v.mock.sessions.values();
-  assert.deepEqual([0, 2].map((i) => JSON.parse(session.answers.get(i)).reload_count), [0, 1]);
+  assert.deepEqual(
+    [0, 2].map((i) => JSON.parse(session.answers.get(i)).reload_count),
+    [0, 1],
+  );
 });
 
 test("another participant's link starts another session, the first one's resumes his", async (t) => {
@@ -103,7 +131,12 @@ test("a second tab says so and may take over; the first one stops", async (t) =>
   await v.page.keyboard.press("ArrowRight");
   await second.getByTestId("choice-left").click();
   await position(second, 2);
-  assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"]]]);
+  assert.deepEqual(stored(v.mock), [
+    [
+      [0, "left"],
+      [1, "left"],
+    ],
+  ]);
 });
 
 test("a session that the server has forgotten starts again from consent", async (t) => {

@@ -25,14 +25,27 @@ test("who comes to a study that was begun is asked, and may go on or be someone 
   await v.hook("consent-agree").click();
   await v.hook("start").click();
   await position(v.page, 0);
-  assert.deepEqual(stored(v.mock), [[[0, "left"], [1, "left"]], []], "what the first one left unsent is the first one's");
+  assert.deepEqual(
+    stored(v.mock),
+    [
+      [
+        [0, "left"],
+        [1, "left"],
+      ],
+      [],
+    ],
+    "what the first one left unsent is the first one's",
+  );
   await answer(v, 0, 1);
   await v.page.reload();
   await position(v.page, 1);
 });
 
 test("a code is shown to who reloads or comes by a link of one's own, and to nobody else", async (t) => {
-  for (const [query, shown] of [["", false], ["?PROLIFIC_PID=p1", true]]) {
+  for (const [query, shown] of [
+    ["", false],
+    ["?PROLIFIC_PID=p1", true],
+  ]) {
     const v = await visit(t, { query });
     await begin(v);
     await answer(v, 0, 5);
@@ -59,7 +72,10 @@ test("in a kiosk each visit is somebody else's, but for a reload, and the end le
   await v.hook("consent-agree").waitFor();
   await v.page.reload();
   await v.hook("consent-agree").waitFor();
-  assert.deepEqual(stored(v.mock).map((answers) => answers.length), [1, 5]);
+  assert.deepEqual(
+    stored(v.mock).map((answers) => answers.length),
+    [1, 5],
+  );
 });
 
 test("a kiosk that nobody touches goes back to the start by itself", async (t) => {
@@ -74,7 +90,11 @@ test("a kiosk that nobody touches goes back to the start by itself", async (t) =
 
 test("over http the code is selected and copied, or it is said how", async (t) => {
   const spoil = 'Object.defineProperty(Navigator.prototype, "clipboard", { get: () => undefined });';
-  for (const [more, words] of [["", "Copied"], ["Document.prototype.execCommand = () => false;", "Please select the code and copy it"], ["Document.prototype.execCommand = undefined;", "Please select the code and copy it"]]) {
+  for (const [more, words] of [
+    ["", "Copied"],
+    ["Document.prototype.execCommand = () => false;", "Please select the code and copy it"],
+    ["Document.prototype.execCommand = undefined;", "Please select the code and copy it"],
+  ]) {
     const v = await visit(t, { spoil: spoil + more });
     await begin(v);
     await answer(v, 0, 5);

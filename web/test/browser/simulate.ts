@@ -21,7 +21,14 @@ export async function simulate(name: string, mode: "data-only" | "visual"): Prom
   const settings = { fixation_ms: 50, first_ms: 50, mask_ms: 50, second_ms: 50 };
   const trial = { trial_index: 0, width: 64, height: 36, shown, settings } as unknown as Trial;
   const parameters = kind.parameters({
-    ...{ study: { question: "Which?", surround: 0.2, display: { sizes: [[64, 36]], fit: "native" } } as unknown as Study, trial, position: "1 of 2", load, sound: async () => true, refreshPeriod: measureRefresh },
+    ...{
+      study: { question: "Which?", surround: 0.2, display: { sizes: [[64, 36]], fit: "native" } } as unknown as Study,
+      trial,
+      position: "1 of 2",
+      load,
+      sound: async () => true,
+      refreshPeriod: measureRefresh,
+    },
     onOnset: () => {},
     onChoice: (data) => told.push(data["choice"]),
   });

@@ -43,7 +43,11 @@ for (const [name, options, fit, right] of displays) {
       assert.equal(pair.length, 2);
       for (const picture of pair) {
         assert.deepEqual(picture.pixels, right.pixels, name);
-        near(picture.device, right.pixels.map((side) => side * right.times), name);
+        near(
+          picture.device,
+          right.pixels.map((side) => side * right.times),
+          name,
+        );
         // A browser lays out in 64ths of a CSS pixel, of which a third is none, and paints at the whole pixel that is nearest.
         near(picture.place, picture.place.map(Math.round), `${name}: begins at a whole pixel`, (options.deviceScaleFactor ?? 1) / 64 + 0.001);
         near([picture.css], [right.css], name);
@@ -89,6 +93,12 @@ test("a window that changes before a trial gets the size for it; one that change
   await v.hook("choice-left").click();
   await v.hook("completion-code").waitFor();
   const [first, second] = rows(v.mock);
-  assert.deepEqual([first.stimulus_size, second.stimulus_size], [[592, 333], [1008, 567]]);
+  assert.deepEqual(
+    [first.stimulus_size, second.stimulus_size],
+    [
+      [592, 333],
+      [1008, 567],
+    ],
+  );
   assert.ok(second.scale < 1 && second.geometry_changed === 1);
 });

@@ -42,9 +42,20 @@ for (const dpr of [1, 2]) {
     await answering(v);
     await v.hook("choice-second").click();
     assert.equal(await v.hook("completion-code").textContent(), "LAKON-7Q4F");
-    assert.deepEqual(stored(v.mock), [[[0, "first"], [1, "second"], [2, "second"], [3, "first"], [4, "second"]]]);
+    assert.deepEqual(stored(v.mock), [
+      [
+        [0, "first"],
+        [1, "second"],
+        [2, "second"],
+        [3, "first"],
+        [4, "second"],
+      ],
+    ]);
     const answers = rows(v.mock);
-    assert.deepEqual(answers.map((row) => row.input), ["keyboard", "keyboard", "keyboard", "keyboard", "mouse"]);
+    assert.deepEqual(
+      answers.map((row) => row.input),
+      ["keyboard", "keyboard", "keyboard", "keyboard", "mouse"],
+    );
     for (const row of answers) {
       assert.deepEqual(wrong(row, durations), []);
       assert.ok(wrong(row, { ...durations, mask_ms: durations.mask_ms + 40 }).length > 0, "40 ms too few would be seen");
@@ -91,7 +102,10 @@ for (const dpr of [1, 2]) {
     assert.equal(differing(response, outside, ...at), 0, "nothing is left of the pictures");
     const ink = differing(seen.fixation, grey, ...at);
     assert.ok(ink > 50 && ink < 1000, `a small cross: ${ink} pixels`);
-    for (const [role, other] of [["first", "second"], ["second", "first"]]) {
+    for (const [role, other] of [
+      ["first", "second"],
+      ["second", "first"],
+    ]) {
       assert.equal(differing(seen[role], bytes(role), ...at), 0, role);
       assert.ok(differing(seen[role], bytes(role), ...at, 1) > 1000, "one pixel off would be seen");
       assert.ok(differing(seen[role], bytes(other), ...at) > 1000, "the other picture would be seen");
@@ -195,7 +209,11 @@ test("those who don't see the page hear its steps, and reach the answers by keyb
   assert.equal(await v.page.evaluate(() => document.activeElement?.textContent), study.question);
   await v.page.evaluate(() => {
     globalThis.heard = [];
-    new MutationObserver(() => globalThis.heard.push(document.querySelector(".spoken").textContent)).observe(document.querySelector(".spoken"), { childList: true, characterData: true, subtree: true });
+    new MutationObserver(() => globalThis.heard.push(document.querySelector(".spoken").textContent)).observe(document.querySelector(".spoken"), {
+      childList: true,
+      characterData: true,
+      subtree: true,
+    });
   });
   await answering(v);
   assert.deepEqual((await v.page.evaluate(() => globalThis.heard)).filter(Boolean), ["First image", "Second image", "Please choose: first or second"]);
@@ -204,5 +222,8 @@ test("those who don't see the page hear its steps, and reach the answers by keyb
   assert.equal(await v.page.evaluate(() => document.activeElement?.textContent), "First");
   await v.page.keyboard.press("Enter");
   await v.hook("completion-code").waitFor();
-  assert.deepEqual(rows(v.mock).map((row) => [row.choice, row.input]), [["first", "keyboard"]]);
+  assert.deepEqual(
+    rows(v.mock).map((row) => [row.choice, row.input]),
+    [["first", "keyboard"]],
+  );
 });

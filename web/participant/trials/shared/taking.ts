@@ -2,12 +2,12 @@
 import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Rules } from "../../inputs/guard.ts";
-import type { Pixels } from "../../layout.ts";
-import { type Given, inputs } from "../../inputs/watch.ts";
-import { eventLog } from "./events.ts";
-import { frameAt } from "../../steady.ts";
-import { hiddenTime } from "./hidden.ts";
 import { offer, offered } from "../../inputs/offered.ts";
+import { type Given, inputs } from "../../inputs/watch.ts";
+import type { Pixels } from "../../layout.ts";
+import { frameAt } from "../../steady.ts";
+import { eventLog } from "./events.ts";
+import { hiddenTime } from "./hidden.ts";
 
 export type Geometry = Schemas["Geometry"];
 /** What can be chosen: the role of a stimulus. */

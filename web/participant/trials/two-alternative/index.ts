@@ -10,7 +10,15 @@ const how = { touch: "how-pair-touch", click: "how-pair-click" } as const;
 /** The keys lie as the pictures would stand in the window as it is. */
 function legend({ question, display }: Study): Legend {
   const stacked = fitPair(display, roomFor(question)).arrangement === "stack";
-  const [first, second] = stacked ? ([{ keys: ["↑"], label: "key-upper" }, { keys: ["↓"], label: "key-lower" }] as const) : ([{ keys: ["←"], label: "key-left" }, { keys: ["→"], label: "key-right" }] as const);
+  const [first, second] = stacked
+    ? ([
+        { keys: ["↑"], label: "key-upper" },
+        { keys: ["↓"], label: "key-lower" },
+      ] as const)
+    : ([
+        { keys: ["←"], label: "key-left" },
+        { keys: ["→"], label: "key-right" },
+      ] as const);
   return { title: "kind-two-alternative", how, stacked, answers: [first, second] };
 }
 

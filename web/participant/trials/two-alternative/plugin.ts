@@ -59,7 +59,14 @@ export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
     };
     if (mode === "data-only") {
       onLoad?.();
-      const where = { stimulus_size: [trial.width, trial.height], scale: 1, css_width_px: (trial.width ?? 0) / devicePixelRatio, arrangement: "side", device_pixel_ratio: devicePixelRatio, viewport: [innerWidth, innerHeight] };
+      const where = {
+        stimulus_size: [trial.width, trial.height],
+        scale: 1,
+        css_width_px: (trial.width ?? 0) / devicePixelRatio,
+        arrangement: "side",
+        device_pixel_ratio: devicePixelRatio,
+        viewport: [innerWidth, innerHeight],
+      };
       const data = { onset: performance.now(), input: "mouse", ...where, refresh_hz: null, hidden_ms: 0, min_visible_ms: made.rt, ...made };
       trial.on_choice?.(data);
       this.#jsPsych.finishTrial(data);

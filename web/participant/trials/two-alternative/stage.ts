@@ -4,10 +4,10 @@ import { h } from "../../../shared/dom.ts";
 import type { Rules } from "../../inputs/guard.ts";
 import { fitPair, type Layout, type Offered } from "../../layout.ts";
 import type { Picture } from "../../stimuli.ts";
+import { words } from "../../words/index.ts";
 import { roomWithin, showAt, shownAt, toWholePixels } from "../shared/place.ts";
 import { Player, played } from "../shared/player.ts";
 import { Taking } from "../shared/taking.ts";
-import { words } from "../../words/index.ts";
 import type { Info } from "./plugin.ts";
 
 export type Side = "left" | "right";

@@ -1,6 +1,7 @@
 /** Two pictures in one place, one after the other: which one? */
-import { common, type TrialModule } from "../module.ts";
+
 import { fitOne } from "../../layout.ts";
+import { common, type TrialModule } from "../module.ts";
 import plugin from "./plugin.ts";
 import { begins, refusal } from "./sequence.ts";
 

@@ -4,11 +4,11 @@ import { h } from "../../../shared/dom.ts";
 import type { Rules } from "../../inputs/guard.ts";
 import { fitOne, inkOn, type Offered, type Size, srgbCode } from "../../layout.ts";
 import type { Picture } from "../../stimuli.ts";
+import { type Plain, words } from "../../words/index.ts";
 import { visible } from "../shared/hidden.ts";
 import { roomWithin, showAt, shownAt, toWholePixels } from "../shared/place.ts";
 import { Player, played } from "../shared/player.ts";
 import { Taking } from "../shared/taking.ts";
-import { type Plain, words } from "../../words/index.ts";
 import { mask, seedOf } from "./mask.ts";
 import type { Info } from "./plugin.ts";
 import { type PerStep, SequenceClock, type Step } from "./sequence.ts";
@@ -56,8 +56,7 @@ export class Stage {
     const [width, height] = pictures.first.pixels;
     this.#canvas = h("canvas", { width, height, "aria-hidden": "true" });
     this.#context = this.#canvas.getContext("2d", { alpha: false }) as CanvasRenderingContext2D;
-    const button = (interval: Interval, label: string) =>
-      h("button", { type: "button", class: "action", "data-testid": `choice-${interval}`, "data-sha256": pictures[interval].sha256 }, label);
+    const button = (interval: Interval, label: string) => h("button", { type: "button", class: "action", "data-testid": `choice-${interval}`, "data-sha256": pictures[interval].sha256 }, label);
     this.#buttons = { first: button("first", words("choice-first")), second: button("second", words("choice-second")) };
     this.#heading = h("h1", { tabindex: -1 }, trial.question);
     this.#footer = h("p", { class: "position", "aria-live": "polite" });
@@ -89,7 +88,10 @@ export class Stage {
       const picture = this.#pictures[interval];
       if (picture.kind === "still") this.#bitmaps[interval] = await createImageBitmap(picture.image);
     }
-    const seed = seedOf(INTERVALS.map((interval) => this.#pictures[interval].sha256), trial_index);
+    const seed = seedOf(
+      INTERVALS.map((interval) => this.#pictures[interval].sha256),
+      trial_index,
+    );
     this.#bitmaps.mask = await createImageBitmap(new ImageData(mask({ width, height, surround, seed }), width, height));
     // A bitmap's first drawing may have to carry it to the graphics card. What of a film is still to come is not among them.
     const animated = INTERVALS.flatMap((interval) => {
