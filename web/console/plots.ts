@@ -56,6 +56,6 @@ export function choiceDistribution(block: Block): SVGSVGElement {
     );
   }
   // Above the lines, with a halo, so that they can be read where a line crosses.
-  counts.forEach((n, k) => svg.append(s("text", { class: "value", x: x(k), y: y(n) - 6, "text-anchor": "middle" }, n)));
+  svg.append(...counts.map((n, k) => s("text", { class: "value", x: x(k), y: y(n) - 6, "text-anchor": "middle" }, n)));
   return svg;
 }

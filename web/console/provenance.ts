@@ -19,16 +19,16 @@ const number = (value: unknown): number | null => (typeof value === "number" ? v
 
 /** The measured error of a stimulus; null where none is known. */
 export function measuredError(provenance: unknown): Measured | null {
-  const error = object(object(provenance)["error"]);
-  const penumbra = object(error["penumbra"]);
-  const [rmse, max] = [number(penumbra["rmse"]), number(penumbra["max"])];
-  return rmse === null || max === null ? null : { reference: object(error["reference"]), penumbra: { rmse, max }, floor: number(error["floor"]) };
+  const error = object(object(provenance).error);
+  const penumbra = object(error.penumbra);
+  const [rmse, max] = [number(penumbra.rmse), number(penumbra.max)];
+  return rmse === null || max === null ? null : { reference: object(error.reference), penumbra: { rmse, max }, floor: number(error.floor) };
 }
 
 /** Monte Carlo's own standard error where it sampled, in the same units; null where there is none. */
 export function standardError(provenance: unknown): { rms: number; max: number } | null {
-  const own = object(object(provenance)["standard_error"]);
-  const [rms, max] = [number(own["rms_sampled"]), number(own["max"])];
+  const own = object(object(provenance).standard_error);
+  const [rms, max] = [number(own.rms_sampled), number(own.max)];
   return rms === null || max === null ? null : { rms, max };
 }
 

@@ -54,7 +54,9 @@ export class VersionList {
       h("p", {}, h("button", { class: "primary" }, "Show these answers")),
     );
     // A version is not pooled with itself.
-    const settle = () => this.#rows.forEach(({ chosen, pool }) => (pool.disabled = chosen.checked));
+    const settle = () => {
+      for (const { chosen, pool } of this.#rows) pool.disabled = chosen.checked;
+    };
     form.addEventListener("change", settle);
     settle();
     form.addEventListener("submit", (event) => {
@@ -70,7 +72,8 @@ export class VersionList {
   recount(versions: readonly StudyVersion[]): void {
     for (const { version, counts } of this.#rows) {
       const now = versions.find((other) => other.version === version);
-      if (now !== undefined) counts.forEach((cell, i) => cell.replaceChildren(countOf(now, i)));
+      if (now === undefined) continue;
+      for (const [i, cell] of counts.entries()) cell.replaceChildren(countOf(now, i));
     }
   }
 }

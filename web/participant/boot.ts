@@ -2,14 +2,15 @@
  * Comes before the page and outlives its failure: says so where a browser is too old for it, or where it did not arrive in full. Written
  * for browsers of any age, so without anything that came after 2009, and with its words built in.
  */
-declare var WORDS: Record<string, Record<"too-old" | "not-loaded" | "reload", string>>;
+type Said = Record<"too-old" | "not-loaded" | "reload", string>;
+declare var WORDS: { en: Said; [language: string]: Said };
 
 (function () {
   var root = document.documentElement;
 
   function show(id: "too-old" | "not-loaded"): void {
     var language = (navigator.language || "en").slice(0, 2).toLowerCase();
-    var words = WORDS[language] || WORDS["en"]!;
+    var words = WORDS[language] || WORDS.en;
     var page = document.createElement("main");
     var text = document.createElement("div");
     text.setAttribute("role", "alert");
@@ -17,7 +18,7 @@ declare var WORDS: Record<string, Record<"too-old" | "not-loaded" | "reload", st
     var again = document.createElement("a");
     again.href = location.href;
     again.className = "link";
-    again.appendChild(document.createTextNode(words["reload"]));
+    again.appendChild(document.createTextNode(words.reload));
     if (id === "not-loaded") text.appendChild(again);
     page.id = "boot";
     page.lang = WORDS[language] ? language : "en";

@@ -96,10 +96,10 @@ function dress({ title, surround }: api.Study): void {
 function stop(error: unknown): void {
   console.error(error);
   const again = action(words("reload"), () => location.reload());
-  if (error instanceof Refused && error.code === "link_refused") return lastPage(words("link-title"), [error.message]);
-  if (error instanceof Ended) return lastPage(error.heading, error.texts, again);
   const known = error instanceof Refused || error instanceof Unusable ? error.message : words("stopped");
-  lastPage(words("stopped-title"), [`${known} ${words("kept")}`], again);
+  if (error instanceof Refused && error.code === "link_refused") lastPage(words("link-title"), [error.message]);
+  else if (error instanceof Ended) lastPage(error.heading, error.texts, again);
+  else lastPage(words("stopped-title"), [`${known} ${words("kept")}`], again);
 }
 
 /** Whether an error is this page's own, and none of an extension's. */

@@ -43,8 +43,13 @@ export class Unpacking {
     if (line < 0) return this.#head;
     const head = parsed(here.subarray(0, line));
     let end = line + 1;
-    this.#pictures = head.picture_bytes.map((length, picture) => ({ start: end, end: (end += length), shownMs: (1000 * head.frames.indexOf(picture)) / head.fps }));
-    return (this.#head = head);
+    this.#pictures = head.picture_bytes.map((length, picture) => {
+      const start = end;
+      end += length;
+      return { start, end, shownMs: (1000 * head.frames.indexOf(picture)) / head.fps };
+    });
+    this.#head = head;
+    return head;
   }
 
   /** The next picture that `here` has all of; null where there is none. */

@@ -39,7 +39,9 @@ export function sha256(bytes: Uint8Array): string {
       const t2 = (rotate(a, 2) ^ rotate(a, 13) ^ rotate(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
       [h, g, f, e, d, c, b, a] = [g, f, e, (d + t1) | 0, c, b, a, (t1 + t2) | 0];
     }
-    [a, b, c, d, e, f, g, h].forEach((word, i) => (state[i] = at(state, i) + word));
+    [a, b, c, d, e, f, g, h].forEach((word, i) => {
+      state[i] = at(state, i) + word;
+    });
   }
   return Array.from(state, (word) => word.toString(16).padStart(8, "0")).join("");
 }

@@ -12,7 +12,8 @@ export function steady(clock: () => number): { now(): number; atLeast(time: numb
   };
   const now = () => {
     atLeast(last);
-    return (last = clock() + shift);
+    last = clock() + shift;
+    return last;
   };
   return { now, atLeast };
 }

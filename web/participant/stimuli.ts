@@ -187,11 +187,20 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
     }
     entry.bytes
       .then(
-        (bytes) => (film.hear(bytes), null),
+        (bytes) => {
+          film.hear(bytes);
+          return null;
+        },
         (error: unknown) => error,
       )
-      .then((wrong) => (film.settle(wrong), entry.films.delete(film)));
-    const head = await bell.found(() => (film.check(), film.pictures.length > 0 ? film.head : null));
+      .then((wrong) => {
+        film.settle(wrong);
+        entry.films.delete(film);
+      });
+    const head = await bell.found(() => {
+      film.check();
+      return film.pictures.length > 0 ? film.head : null;
+    });
     return { sha256, pixels: [head.width, head.height], kind: "animation", head, film };
   };
 
@@ -219,14 +228,19 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
     return all.every(([role, { film, rate }]) => film.isDecoded || (!areHere && film.playsThrough(rate.at(performance.now()), begins[role] ?? 0)));
   };
 
-  const check = ({ films }: Ready) => films.forEach(({ film }) => film.check());
+  const check = ({ films }: Ready) => {
+    for (const { film } of films.values()) film.check();
+  };
 
   const load = async (trial: Sized, begins: Begins): Promise<Pictures> => {
     for (;;) {
       const made = make(trial);
       try {
         const pictures = await made.pictures;
-        await bell.found(() => (check(made), canBegin(made, begins) || null));
+        await bell.found(() => {
+          check(made);
+          return canBegin(made, begins) || null;
+        });
         return pictures;
       } catch (error) {
         if (!(error instanceof Damaged)) throw error;
@@ -238,7 +252,10 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
   const sound = async (made: Ready | undefined): Promise<boolean> => {
     if (made === undefined) return true;
     try {
-      return await bell.found(() => (check(made), [...made.films.values()].every(({ film }) => film.isSound) || null));
+      return await bell.found(() => {
+        check(made);
+        return [...made.films.values()].every(({ film }) => film.isSound) || null;
+      });
     } catch (error) {
       if (error instanceof Damaged) return false;
       throw error;
@@ -266,7 +283,7 @@ export function openLoader(onWaiting: (waiting: boolean) => void, onProgress: (p
       }
     };
     made?.pictures.then(close, () => undefined);
-    made?.films.forEach(({ film }) => film.close());
+    for (const { film } of made?.films.values() ?? []) film.close();
   };
 
   return {

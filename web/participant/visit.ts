@@ -259,7 +259,8 @@ export class Visit {
   }
 
   #measure(): Promise<number | null> {
-    return (this.#refresh ??= measureRefresh());
+    this.#refresh ??= measureRefresh();
+    return this.#refresh;
   }
 
   /** Waits until every answer is stored, then asks for the code: it exists only then. */

@@ -4,7 +4,10 @@ import { fetchState } from "../participant/api.ts";
 
 test("a page that comes back says what it has not sent, so that the plan of those answers stays", async (t) => {
   const asked: string[] = [];
-  t.mock.method(globalThis, "fetch", async (path: string) => (asked.push(path), new Response('{"session_id":"s","trials":[]}')));
+  t.mock.method(globalThis, "fetch", async (path: string) => {
+    asked.push(path);
+    return new Response('{"session_id":"s","trials":[]}');
+  });
   const who = { session_id: "s", token: "t" };
   await fetchState(who, 0);
   await fetchState(who, 2);

@@ -34,7 +34,10 @@ const play = (clock: { tick(now: number): number }, times: number[]) => times.ma
 /** Numbers in [−1, 1), the same each time. */
 function noise(seed: number): () => number {
   let state = seed;
-  return () => 2 * ((state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32) - 1;
+  return () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return (2 * state) / 2 ** 32 - 1;
+  };
 }
 
 /** Displays by name: when they redraw in ten seconds, and the period that is measured of them. */

@@ -35,9 +35,15 @@ async function line(...answers: Array<(response: ServerResponse, from: number, r
       bytes += more;
       assert.equal(here.length, bytes, "what is counted is here");
     },
-    onWrong: () => void (wrong += 1),
+    onWrong() {
+      wrong += 1;
+    },
   };
-  const get = (hash = sha256(data)) => download({ sha256: hash, url }, watcher, STALL_MS).finally(() => (server.closeAllConnections(), server.close()));
+  const get = (hash = sha256(data)) =>
+    download({ sha256: hash, url }, watcher, STALL_MS).finally(() => {
+      server.closeAllConnections();
+      server.close();
+    });
   return { get, ranges, said, counted: () => bytes, wrong: () => wrong };
 }
 

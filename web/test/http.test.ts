@@ -48,7 +48,10 @@ test("what a proxy or a sign-in page says is not the server's word: it may be ot
 
 test("a request that outlives its page is small: browsers refuse the others as if the line were lost", async (t) => {
   const kept: unknown[] = [];
-  t.mock.method(globalThis, "fetch", async (_: string, { keepalive }: RequestInit) => (kept.push(keepalive), new Response("{}")));
+  t.mock.method(globalThis, "fetch", async (_: string, { keepalive }: RequestInit) => {
+    kept.push(keepalive);
+    return new Response("{}");
+  });
   for (const length of [100, 16 << 10, (16 << 10) + 1]) await request("/x", { method: "PUT", text: "x".repeat(length), keepalive: true });
   assert.deepEqual(kept, [true, true, false]);
 });

@@ -71,8 +71,14 @@ test("a key that is held answers once, whatever its repeats look like", () => {
   const repeats: Record<string, (guard: InputGuard, at: number) => Press> = {
     "as the browser says": (guard, at) => guard.down("key:ArrowLeft", at, true),
     "as downs without a word": (guard, at) => guard.down("key:ArrowLeft", at),
-    "as pairs of down and up": (guard, at) => (guard.up("key:ArrowLeft", at), guard.down("key:ArrowLeft", at)),
-    "as pairs with time between": (guard, at) => (guard.up("key:ArrowLeft", at - 20), guard.down("key:ArrowLeft", at)),
+    "as pairs of down and up": (guard, at) => {
+      guard.up("key:ArrowLeft", at);
+      return guard.down("key:ArrowLeft", at);
+    },
+    "as pairs with time between": (guard, at) => {
+      guard.up("key:ArrowLeft", at - 20);
+      return guard.down("key:ArrowLeft", at);
+    },
   };
   for (const [form, repeat] of Object.entries(repeats)) {
     for (const rules of [EDITION_1, EDITION_2]) {

@@ -109,7 +109,7 @@ export async function startMock({
     study: found(),
     language: Object.hasOwn(study.translations, String(s.body.display?.language)) ? String(s.body.display?.language) : study.language,
     status: s.code ? "completed" : s.consented ? "in_progress" : "consent",
-    named: s.body.params?.["PROLIFIC_PID"] !== undefined,
+    named: s.body.params?.PROLIFIC_PID !== undefined,
     consented: s.consented,
     trials: s.consented ? decided(s) : [],
     plan: String(s.replans),
@@ -139,7 +139,7 @@ export async function startMock({
       const missing = decided(s).flatMap((trial) => (trial.answered ? [] : [trial.trial_index]));
       if (missing.length > 0 || more(s)) return problem(409, "incomplete", "Some trials have no answer yet.", { missing, more: more(s) });
       s.code ??= "LAKON-7Q4F";
-      const reply: Completion = { completion_code: s.code, ...(s.body.params?.["PROLIFIC_PID"] ? { redirect: "https://app.prolific.com/submissions/complete?cc=LAKON7Q4F" } : {}) };
+      const reply: Completion = { completion_code: s.code, ...(s.body.params?.PROLIFIC_PID ? { redirect: "https://app.prolific.com/submissions/complete?cc=LAKON7Q4F" } : {}) };
       return [200, reply];
     }
     return null;
@@ -211,7 +211,7 @@ export async function startMock({
     const planned = fault({ method, path, body: text === "" ? undefined : JSON.parse(text) });
     if (planned === "hang up") return void req.socket.destroy();
     if (planned === "stall") return;
-    if (planned === "half") return void (res.writeHead(200, { "content-type": "application/json", "content-length": 500 }), res.write('{"acknowledged":'));
+    if (planned === "half") return void res.writeHead(200, { "content-type": "application/json", "content-length": 500 }).write('{"acknowledged":');
     if (planned?.html !== undefined) return send(planned.status ?? 200, "text/html", planned.html);
     if (planned !== null && planned.after !== true) return json(planned.body === undefined ? problem(planned.status ?? 500, "internal", "A planned fault.") : [planned.status ?? 500, planned.body]);
     if (path.startsWith("/api/")) {
@@ -247,7 +247,11 @@ export async function startMock({
     json(problem(404, "not_found", "There is nothing here."));
   });
   await new Promise<void>((resolve) => server.listen(port, "127.0.0.1", resolve));
-  const close = () => new Promise((resolve) => (server.closeAllConnections(), server.close(resolve)));
+  const close = () =>
+    new Promise((resolve) => {
+      server.closeAllConnections();
+      server.close(resolve);
+    });
   return { url: `http://127.0.0.1:${(server.address() as AddressInfo).port}`, sessions, log, close, stuff };
 }
 

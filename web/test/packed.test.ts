@@ -36,7 +36,8 @@ test("byte by byte each picture comes with its last byte, once", async () => {
   const blobs: Blob[] = [];
   for (let cut = 0; cut <= whole.length; cut++) {
     const now = taken(unpacking, whole.subarray(0, cut));
-    for (const blob of now) came.push(cut), blobs.push(blob);
+    came.push(...now.map(() => cut));
+    blobs.push(...now);
   }
   assert.deepEqual(came, ends);
   assert.deepEqual(await read(blobs), pictures);

@@ -45,7 +45,10 @@ export function shadow(look: Look = {}): Buffer {
 export function shadowRows({ width = 592, height = 333, turn = 0, soft = 6, noise = 0, seed = 1 }: Look = {}): Uint8Array {
   const rgb = new Uint8Array(width * height * 3);
   let state = seed >>> 0 || 1;
-  const random = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
+  const random = () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return state / 2 ** 32;
+  };
   const step = (d: number) => 1 / (1 + Math.exp(-d / (soft / 3)));
   for (let y = 0; y < height; y++) {
     for (let x = 0; x < width; x++) {

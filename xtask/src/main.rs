@@ -157,6 +157,7 @@ fn test() -> Result<()> {
     ensure(&[Need::Node, Need::Cxx, Need::Vulkan, Need::Chromium, Need::Sqlite])?;
     step("format", cargo(&["fmt", "--all", "--check"]))?;
     step("web packages", npm("web", &["ci", "--ignore-scripts"]))?;
+    step("web lint", npm("web", &["run", "lint"]))?;
     step("web types", npm("web", &["run", "check"]))?;
     step("web units", npm("web", &["test"]))?;
     step("browser driver", npm("tests", &["ci", "--ignore-scripts"]))?;

@@ -20,7 +20,10 @@ export function display({ hz, drop }) {
     for (const [, run] of due) run(at);
     setTimeout(tick, 0);
   };
-  globalThis.requestAnimationFrame = (run) => (queue.push([++handle, run]), handle);
+  globalThis.requestAnimationFrame = (run) => {
+    queue.push([++handle, run]);
+    return handle;
+  };
   globalThis.cancelAnimationFrame = (id) => (queue = queue.filter(([known]) => known !== id));
   // What is drawn of a film that is shown: a picture that is a bitmap.
   globalThis.drawn = 0;

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { startMock } from "../mock-server.ts";
 import { material, study } from "../mock-study.ts";
 import { hasFirefox, launchFirefox } from "./firefox.mjs";
-import { begin, bundle, painted, position, rows, stored, visit } from "./visit.mjs";
+import { begin, bundle, position, rows, stored, visit } from "./visit.mjs";
 
 const EDITION_2 = { min_visible_ms: 200, min_gap_ms: 500 };
 const EDITION_1 = { min_visible_ms: 0, min_gap_ms: 0 };
@@ -47,7 +47,8 @@ async function ready(v, i) {
 
 /** Presses a point of the page, quick ones counted as a browser does: `clickCount` is what `event.detail` will be. */
 async function press(v, at, clickCount, pointer) {
-  const cdp = (v.cdp ??= await v.context.newCDPSession(v.page));
+  v.cdp ??= await v.context.newCDPSession(v.page);
+  const { cdp } = v;
   if (pointer === "touch") {
     await cdp.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [at] });
     return cdp.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { study } from "../mock-study.ts";
-import { launch, sizes } from "./chromium.mjs";
+import { launch } from "./chromium.mjs";
 import { differing, pixels, screenOf } from "./pixels.mjs";
 import { answer, begin, position, stored, visit } from "./visit.mjs";
 

@@ -30,7 +30,7 @@ export async function simulate(name: string, mode: "data-only" | "visual"): Prom
       refreshPeriod: measureRefresh,
     },
     onOnset: () => {},
-    onChoice: (data) => told.push(data["choice"]),
+    onChoice: (data) => told.push(data.choice),
   });
   const node = { ...parameters, type: kind.plugin };
   await jsPsych.simulate([node, node], mode);

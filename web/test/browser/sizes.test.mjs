@@ -22,7 +22,9 @@ const seen = (page) =>
     });
   });
 
-const near = (found, right, text, within = 0.02) => found.forEach((x, i) => assert.ok(Math.abs(x - right[i]) < within, `${text}: ${found} for ${right}`));
+const near = (found, right, text, within = 0.02) => {
+  for (const [i, x] of found.entries()) assert.ok(Math.abs(x - right[i]) < within, `${text}: ${found} for ${right}`);
+};
 
 const displays = [
   ["a phone upright", sizes.phone, "native", { pixels: [1008, 567], times: 1, arrangement: "stack", css: 336 }],

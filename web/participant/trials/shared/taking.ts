@@ -125,7 +125,10 @@ export class Taking<Role extends Chosen> {
     const { rules, simulated } = this.#options;
     const visibleMs = given.press.at - this.#onset - this.#hiddenMs();
     const reason = this.#choice === null ? inputs.judge(given, rules, visibleMs, simulated) : "answered";
-    if (reason !== null) return this.#log.add({ event: "ignored", reason, input: given.input, choice: role }, given.at);
+    if (reason !== null) {
+      this.#log.add({ event: "ignored", reason, input: given.input, choice: role }, given.at);
+      return;
+    }
     this.#choice = { role, input: given.input, at: given.at };
     this.#offering.abort();
     offer(this.#buttons, false);

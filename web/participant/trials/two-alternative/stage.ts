@@ -75,7 +75,9 @@ export class Stage {
       const [picture, context] = [this.#pair[side], this.#paint[side]];
       return picture.kind === "still" || context === null ? [] : [[side, new Player(picture, context, periodMs)] as const];
     });
-    const draw = (now: number) => players.forEach(([, player]) => player.draw(now));
+    const draw = (now: number) => {
+      for (const [, player] of players) player.draw(now);
+    };
     const decoded = SIDES.flatMap((side) => {
       const picture = this.#pair[side];
       return picture.kind === "still" ? [picture.image.decode()] : [];
