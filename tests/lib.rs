@@ -1,5 +1,5 @@
 //! Helpers of the end-to-end tests: the real binary, a server, a database shell, a browser.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};

@@ -3,7 +3,7 @@
 //! It needs Node and npm, and says so when they are missing: a server without its pages would only look like one.
 //! `KELIR_WEB_DIST=DIR` names a bundle that was built elsewhere (`node web/build.mjs DIR`) and is embedded as it is.
 //! Nothing is written outside `web/node_modules` and `OUT_DIR`.
-#![allow(clippy::print_stdout)] // cargo's protocol with build scripts
+#![allow(clippy::print_stdout, reason = "cargo's protocol with build scripts")]
 
 use std::fs;
 use std::io;

@@ -77,6 +77,7 @@ async function take({ name, study, viewport, dpr = 1, input, choices, targets, r
     if (offline.includes(index)) await context.setOffline(true);
     await page.locator(".trial").evaluate((element) => (element.dataset.done = ""));
     await choose(page, input, trial.choice, index);
+    await pressed(page, input, trial.choice, `${name}, trial ${index}`);
     trials.push(trial);
     if (offline.includes(index)) {
       await page.getByText("No connection.").waitFor();
@@ -149,6 +150,21 @@ async function choose(page, input, role, index) {
   const keys = { left: ["ArrowLeft"], right: ["ArrowRight"], first: ["1", "ArrowLeft"], second: ["2", "ArrowRight"] }[role];
   if (input === "keyboard") return page.keyboard.press(keys[index % keys.length]);
   return press(page, input, page.getByTestId(`choice-${role}`));
+}
+
+/** Presses again, as people do, where a press did nothing within seconds; says what stood there. */
+async function pressed(page, input, role, where) {
+  const button = page.locator(".trial[data-done]").getByTestId(`choice-${role}`);
+  for (;;) {
+    const gone = await button.waitFor({ state: "detached", timeout: 5000 }).then(
+      () => true,
+      () => false,
+    );
+    if (gone || input === "keyboard") return;
+    const stands = await button.evaluate((b) => [b.outerHTML.slice(0, 300), JSON.stringify(b.getBoundingClientRect())]).catch(String);
+    console.error(`${where}: a press (${input}) did nothing: ${stands}`);
+    await press(page, input, button, { timeout: 1000 }).catch(() => {});
+  }
 }
 
 /** Presses a button. */

@@ -59,7 +59,7 @@ fn violations(metadata: &Value) -> Vec<String> {
     found
 }
 
-fn packages(metadata: &Value) -> impl Iterator<Item = &Value> {
+pub(crate) fn packages(metadata: &Value) -> impl Iterator<Item = &Value> {
     metadata["packages"].as_array().expect("packages").iter()
 }
 
@@ -87,7 +87,7 @@ fn closure<'a>(from: &'a str, edges: &BTreeMap<&'a str, Vec<&'a str>>) -> BTreeS
     seen
 }
 
-fn metadata() -> Value {
+pub(crate) fn metadata() -> Value {
     let version = Command::new(env!("CARGO")).arg("-vV").output().expect("cargo -vV");
     let version = String::from_utf8_lossy(&version.stdout).into_owned();
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("a host");
@@ -123,6 +123,55 @@ fn a_broken_wall_is_seen() {
     assert!(found.iter().any(|v| v == "kelir-stats reaches axum: it must stay pure"), "{found:?}");
     // axum brings tokio, and study builds on stats: both are seen through the chain.
     assert!(found.iter().any(|v| v == "kelir-stats reaches tokio: it must stay pure"), "{found:?}");
+}
+
+/// What the server may name of the renderer: the door, and what goes in and comes out by it.
+const DOOR: [&str; 7] = ["job", "camera", "Backend", "Pixel", "RenderError", "Technique", "View"];
+
+/// What a text names of the renderer beside the door, lists in braces apart.
+fn past_the_door(text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for named in text.split("kelir_render::").skip(1) {
+        let list =
+            named.strip_prefix('{').and_then(|rest| rest.split_once('}')).map_or(named, |(list, _)| list);
+        let items: Vec<&str> = if named.starts_with('{') { list.split(',').collect() } else { vec![named] };
+        let first = |item: &str| -> String {
+            item.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+        };
+        found.extend(
+            items.into_iter().map(first).filter(|name| !name.is_empty() && !DOOR.contains(&name.as_str())),
+        );
+    }
+    found
+}
+
+/// Rust files below a folder, each with its text.
+fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
+    let (mut found, mut open) = (Vec::new(), vec![folder.to_owned()]);
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            open.extend(fs::read_dir(&path).expect("folder").map(|entry| entry.expect("entry").path()));
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            let text = fs::read_to_string(&path).expect("text");
+            found.push((path, text));
+        }
+    }
+    found
+}
+
+#[test]
+fn the_server_reaches_the_renderer_through_one_door() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("root");
+    let sources = sources(&root.join("crates/server/src"));
+    let past: Vec<_> = sources
+        .iter()
+        .flat_map(|(path, text)| past_the_door(text).into_iter().map(move |n| (path, n)))
+        .collect();
+    assert_eq!(past, []);
+    assert!(sources.iter().any(|(_, text)| text.contains("kelir_render::job")), "the door has another name");
+    // Controls: by a path, from a list, and from the middle of an expression.
+    let text = "use kelir_render::pa::Knobs;\nuse kelir_render::{View, mc, job::run};\nlet a = kelir_render::gpu::open();";
+    assert_eq!(past_the_door(text), ["pa", "mc", "gpu"]);
 }
 
 /// Where a kind of trial may be named outside its own folders: what wrote and reads the first layout knew one kind.

@@ -1,5 +1,5 @@
 //! End to end: the real binary, a real browser, a real database.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 mod adaptive;
 mod check;
@@ -10,6 +10,7 @@ mod front;
 mod invariants;
 mod kinds;
 mod late;
+mod licences;
 mod report;
 mod soak;
 mod survey;

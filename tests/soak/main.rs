@@ -1,5 +1,5 @@
 //! `cargo xtask soak`: every attack, one after the other, and a table of what came of it.
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, reason = "its table is for a terminal")]
 
 use kelir_tests::soak::{ATTACKS, Plan};
 use std::process::ExitCode;

@@ -162,6 +162,9 @@ fn test() -> Result<()> {
     step("web units", npm("web", &["test"]))?;
     step("browser driver", npm("tests", &["ci", "--ignore-scripts"]))?;
     step("lints", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    let mut docs = cargo(&["doc", "--workspace", "--no-deps", "--document-private-items", "--quiet"]);
+    docs.env("RUSTDOCFLAGS", "-D warnings");
+    step("documentation", docs)?;
     // The end-to-end tests run the real binary, so it is built first.
     step("build", cargo(&["build", "--workspace"]))?;
     run::tests("tests", cargo(&["test", "--workspace"]))?;

@@ -1,5 +1,5 @@
 //! A figure of each kind, on standard output, to look at: `cargo run -p kelir-plot --example look -- log|names`.
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, reason = "it is run for what it prints")]
 
 use kelir_plot::{Axis, Figure, Point, Rule, Series, svg};
 

@@ -49,7 +49,7 @@ pub enum Rule {
     Vertical(f64, String),
 }
 
-/// A figure to draw with [`svg`].
+/// A figure to draw with [`svg`](fn@svg).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Above the figure, and its accessible name.

@@ -1,5 +1,5 @@
 //! Frames a second of PA: `cargo run --release -p kelir-render --example frames -- SCENE.toml [FRAMES] [WIDTH] [slid|posed|lamp|all|every] [cpu|gpu]`, or `-- table`.
-#![allow(clippy::print_stdout, clippy::expect_used)]
+#![allow(clippy::print_stdout, clippy::expect_used, reason = "it is run for what it prints, by hand")]
 
 use kelir_render::bench::{Case, frames, table};
 use kelir_render::{Backend, Pixel, Technique, View, pa};

@@ -170,7 +170,7 @@ fn gaussian(seed: u64, index: u64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
 
     fn flat(level: f32) -> Frame {

@@ -7,7 +7,7 @@ use crate::{Frame, RenderError};
 
 /// Every f32 belongs to one of these bins by its exponent and seven bits of mantissa; codes are at least 0.8 % apart, so
 /// a bin holds at most one step.
-const LOWEST: u32 = 114 << 23; // 2⁻¹³: below the first step
+pub(crate) const LOWEST: u32 = 114 << 23; // 2⁻¹³: below the first step
 const BINS: usize = 13 << 7;
 
 /// The encoder's table; get it once with [`Srgb::get`].
@@ -140,7 +140,7 @@ pub fn exr(frame: &Frame, attributes: &Attributes) -> Result<Vec<u8>, RenderErro
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use rayon::prelude::*;
 
     use super::*;

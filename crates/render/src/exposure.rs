@@ -91,7 +91,7 @@ impl Rule {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use glam::DVec3;
     use kelir_scene::{Albedo, Emitter, EmitterShape, Lamp, Screen};
 

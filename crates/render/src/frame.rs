@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
+use crate::RenderError;
+
 /// How a pixel's value is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -26,6 +28,28 @@ pub struct View {
     pub pixel: Pixel,
     /// Whether work that the scene does not need is skipped; the bytes are the same either way.
     pub skip: bool,
+}
+
+impl View {
+    /// Checks the view against the screen: sizes above zero, and square pixels to within half a pixel.
+    ///
+    /// # Errors
+    /// [`RenderError::View`]: which size, and which it would have to be.
+    pub fn check(&self, theatre: &Theatre) -> Result<(), RenderError> {
+        let [w, h] = self.size;
+        if w == 0 || h == 0 || w > 1 << 16 || h > 1 << 16 {
+            return Err(RenderError::View(format!("size = {w}x{h}: each side from 1 to 65536 pixels")));
+        }
+        let (screen_w, screen_h) = (theatre.screen.width_m, theatre.screen.height_m);
+        let ideal = w as f64 * screen_h / screen_w;
+        if (ideal - h as f64).abs() > 0.5 && (h as f64 * screen_w / screen_h - w as f64).abs() > 0.5 {
+            return Err(RenderError::View(format!(
+                "size = {w}x{h}: the screen is {screen_w} m x {screen_h} m, so {w} pixels of width need {} of height",
+                ideal.round().max(1.0)
+            )));
+        }
+        Ok(())
+    }
 }
 
 /// A drawn image in linear light.
@@ -87,7 +111,7 @@ impl Meter {
 /// Draws theatres with one technique on one backend; keeps what it built between calls and reuses what did not change.
 pub trait Renderer: Send {
     /// The audience's linear radiance.
-    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, crate::RenderError>;
+    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError>;
 
     /// Display codes: sRGB-encoded clip(L / white), each pixel `0xFFBBGGRR` (bytes R, G, B, 255), into `out` of `width * height`.
     fn display(
@@ -96,7 +120,7 @@ pub trait Renderer: Send {
         view: &View,
         white: f64,
         out: &mut [u32],
-    ) -> Result<Stats, crate::RenderError>;
+    ) -> Result<Stats, RenderError>;
 
     /// Counts the rows of what is drawn from now on; techniques that are done before anyone looks do not.
     fn watch(&mut self, meter: &Meter) {

@@ -3,7 +3,7 @@
 //! A rectangle's is Lambert's formula, a sum of four arctangent terms. They are of order one, so a small or distant emitter, whose
 //! value is of order area / distance², is what is left when almost everything cancels. Below
 //! [`CLOSED_FORM_FROM`] steradians the integral is taken by tensor Gauss rules instead, on pieces small enough for
-//! their error bound ([`order`]). A disk's closed form has an arrangement without cancellation.
+//! their error bound (`order`). A disk's closed form has an arrangement without cancellation.
 
 use std::sync::{Arc, OnceLock};
 
@@ -135,7 +135,7 @@ fn gauss(c: DVec2, a: f64, b: f64, h: f64) -> f64 {
     sum * a * b
 }
 
-/// [`unit`] for whole rows of pixel centres; relative error ≤ 2e-8, a third of an f32's rounding.
+/// [`unit`](fn@unit) for whole rows of pixel centres; relative error ≤ 2e-8, a third of an f32's rounding.
 ///
 /// Along a row it is taken at every `stride`th column and interpolated by cubics, whose error is at most 9/16 s⁴ max|f⁗| / 4! for points s
 /// apart; Cauchy's estimate on a circle of half the distance R makes that 144 (s / R)⁴ of the value.
@@ -239,7 +239,7 @@ fn add_node_generic(columns: &[f64], x: f64, dy2: f64, h: f64, weight: f64, out:
 }
 multiversion! { fn add_node(columns: &[f64], x: f64, dy2: f64, h: f64, weight: f64, out: &mut [f64]) = add_node_generic; }
 
-/// [`unit`] at the centre of every pixel, row-major, first row on top; relative error ≤ 2e-8.
+/// [`unit`](fn@unit) at the centre of every pixel, row-major, first row on top; relative error ≤ 2e-8.
 pub fn unit_image(shape: &EmitterShape, lamp_m: DVec3, screen: &Screen, size: [usize; 2]) -> Vec<f64> {
     let rows = UnitRows::new(shape, lamp_m, screen, size);
     let mut out = vec![0.0; size[0] * size[1]];
@@ -323,7 +323,7 @@ impl UnitImages {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
 
     /// Kind, half-sides, lamp, point and value from mpmath; `tests/data/irradiance.py` made them.

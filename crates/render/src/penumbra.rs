@@ -115,7 +115,7 @@ fn add(theatre: &Theatre, view: &View, plane: &Plane, sides_m: DVec2, out: &mut 
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use std::sync::Arc;
 
     use kelir_scene::{Albedo, Ambient, Emitter, EmitterShape, Exposure, Lamp, Screen, Texels};

@@ -40,7 +40,7 @@ impl ShadowBox {
     }
 }
 
-/// A vector of the puppet's own frame in the theatre's: R_y(tilt_deg[1]) · R_x(tilt_deg[0]), right-handed.
+/// A vector of the puppet's own frame in the theatre's: `R_y(tilt_deg[1]) · R_x(tilt_deg[0])`, right-handed.
 pub fn turned(plane: &Plane, v: DVec3) -> DVec3 {
     let [about_x, about_y] = plane.tilt_deg.map(f64::to_radians);
     DMat3::from_rotation_y(about_y) * (DMat3::from_rotation_x(about_x) * v)

@@ -51,17 +51,17 @@ impl Isa {
 macro_rules! multiversion {
     ($(#[$meta:meta])* $vis:vis fn $name:ident $(<const $n:ident: $t:ty>)? ($($arg:ident: $ty:ty),* $(,)?) = $body:path;) => {
         $(#[$meta])*
-        #[allow(clippy::too_many_arguments)]
+        #[allow(clippy::too_many_arguments, reason = "those of the body")]
         $vis fn $name $(<const $n: $t>)? ($($arg: $ty),*) {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-                #[allow(clippy::too_many_arguments)]
+                #[allow(clippy::too_many_arguments, reason = "those of the body")]
                 fn avx512 $(<const $n: $t>)? ($($arg: $ty),*) {
                     $body($($arg),*)
                 }
                 #[target_feature(enable = "avx2")]
-                #[allow(clippy::too_many_arguments)]
+                #[allow(clippy::too_many_arguments, reason = "those of the body")]
                 fn avx2 $(<const $n: $t>)? ($($arg: $ty),*) {
                     $body($($arg),*)
                 }

@@ -1,7 +1,7 @@
 //! What came of a study, written: for the terminal, a spreadsheet, a browser, a paper.
 //!
-//! [`StudyReport`] holds every number; [`Document`] is what is said of them, once, and [`text`], [`html`] and [`markdown`] only write it
-//! down. [`csv`] has one row a number. Pure: strings in, strings out, the same bytes for the same answers.
+//! [`StudyReport`] holds every number; [`Document`] is what is said of them, once, and [`text`](fn@text), [`html`](fn@html) and [`markdown`](fn@markdown) only write it
+//! down. [`csv`](fn@csv) has one row a number. Pure: strings in, strings out, the same bytes for the same answers.
 
 mod blocks;
 mod csv;

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p kelir-scene --example posing [SCENE.toml]`: without a scene, a test figure of eight parts on
 //! 1024² texels whose arms move, and the same figure turned as a whole.
-#![allow(clippy::print_stdout, clippy::expect_used)]
+#![allow(clippy::print_stdout, clippy::expect_used, reason = "it is run for what it prints, by hand")]
 
 use std::collections::BTreeMap;
 use std::hint::black_box;

@@ -1,6 +1,6 @@
 //! Serves the studies with placeholder pictures in place of rendered ones, to work on the pages:
 //! `cargo run -p kelir-server --example placeholder -- DATA PORT` (password: `wayang kulit`).
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, reason = "it is run for what it prints")]
 
 #[path = "../tests/it/placeholder.rs"]
 mod placeholder;

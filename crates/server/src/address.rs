@@ -172,7 +172,7 @@ fn recent(events: &mut VecDeque<Instant>, window: Duration, now: Instant) {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
 

@@ -157,7 +157,7 @@ fn unhex(text: &str) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
     use std::os::unix::fs::PermissionsExt;

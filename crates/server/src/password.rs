@@ -107,7 +107,7 @@ pub(crate) fn random_token() -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
     use std::os::unix::fs::PermissionsExt;

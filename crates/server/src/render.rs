@@ -4,7 +4,6 @@ use crate::library::Library;
 use crate::making::{Made, Maker, Task};
 use kelir_render::camera::Camera;
 use kelir_render::job::{Drawing, Job, Output, run};
-use kelir_render::pa::check_view;
 use kelir_render::{Backend, Pixel, RenderError, Technique, View};
 use kelir_scene::Scene;
 use kelir_study::{Condition, Kind, Problem};
@@ -75,7 +74,7 @@ impl Maker for RenderMaker {
 pub(crate) fn rehearse(task: &Task<'_>, scene: Scene) -> (Scene, Result<(), RenderError>) {
     match job(task) {
         Ok(job) if task.rank > 0 => {
-            let possible = check_view(&scene.still(), &job.view);
+            let possible = job.view.check(&scene.still());
             (scene, possible)
         }
         Ok(job) => kelir_render::job::rehearse(job.with_scene(scene)),

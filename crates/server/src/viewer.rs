@@ -214,7 +214,7 @@ fn object(value: &Value) -> impl IntoIterator<Item = (&String, &Value)> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
     use std::collections::BTreeSet;

@@ -98,7 +98,6 @@ fn list(components: &[Vec<String>]) -> String {
 /// A result with the crate's error.
 pub type Result<T> = std::result::Result<T, StatsError>;
 
-#[allow(dead_code)] // each is used as its module lands
 impl StatsError {
     /// `Ok(value)` when it is a number (infinities included).
     pub(crate) fn number(name: &'static str, value: f64) -> Result<f64> {

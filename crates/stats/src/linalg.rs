@@ -55,7 +55,7 @@ pub(crate) fn log_det(l: &[f64], p: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
 
     #[test]

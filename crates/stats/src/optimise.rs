@@ -146,7 +146,7 @@ fn newton_step(here: &Local, free: &[usize], p: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
 
     /// −(x − 3)⁴ − (y + 1)², whose fourth-order top is hard on Newton, and a bound that cuts it.

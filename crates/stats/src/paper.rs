@@ -235,7 +235,7 @@ fn search_printed_t(printed: Printed, participants: (u64, u64)) -> Result<Printe
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
 
     #[test]

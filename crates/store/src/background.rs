@@ -28,7 +28,7 @@ pub async fn background<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'st
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
 
     /// The calling thread's nice value: the 19th field of its line, counted after the name, which may hold anything.

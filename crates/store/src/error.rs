@@ -191,7 +191,7 @@ impl StoreError {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
     use rusqlite::{Connection, OpenFlags};

@@ -133,7 +133,7 @@ impl PixelsHash {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
     use image::codecs::png::{CompressionType, FilterType, PngEncoder};

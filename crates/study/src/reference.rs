@@ -1,5 +1,5 @@
 //! The reference page of study files, made of what their parser asks for; the guide beside the studies names every key of it.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use crate::StudyDefinition;
 use crate::trials::TrialKind;

@@ -107,7 +107,7 @@ pub fn screen(study: &StudyDefinition, participant: &Participant, flags: &[Flag]
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
     use crate::answers::{Answers, Row};

@@ -92,7 +92,7 @@ impl<'a> MakeWriter<'a> for Writer {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
     use std::sync::Mutex;

@@ -115,7 +115,7 @@ pub fn measure(
     options.check(cases)?;
     let view = &options.view;
     let theatre = &scene.still();
-    crate::pa::check_view(theatre, view)?;
+    view.check(theatre)?;
     let total = cases.len() * options.backends.len() + 2;
     let mut step = |done, what: &str| progress(Progress { done, total, what });
 

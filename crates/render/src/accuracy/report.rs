@@ -84,7 +84,7 @@ pub struct CaseReport {
 /// What came of a case.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
-#[allow(clippy::large_enum_variant)] // A few dozen of them, all measured.
+#[allow(clippy::large_enum_variant, reason = "a few dozen of them, all measured")]
 pub enum Outcome {
     /// Its times and errors.
     Measured(Measured),

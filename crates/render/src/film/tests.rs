@@ -1,4 +1,4 @@
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use openh264::decoder::Decoder;
 use openh264::formats::YUVSource;

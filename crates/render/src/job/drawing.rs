@@ -3,7 +3,7 @@
 use kelir_scene::Theatre;
 
 use super::{Blob, Job, Output};
-use crate::{Frame, Meter, RenderError, Renderer, Stats, Technique, encode, pa, renderer};
+use crate::{Frame, Meter, RenderError, Renderer, Stats, Technique, encode, renderer};
 
 /// A job being drawn, frame by frame; it keeps what it built between frames.
 pub struct Drawing<'j> {
@@ -33,7 +33,7 @@ impl<'j> Drawing<'j> {
         job.check()?;
         job.frames()?;
         let renderer = renderer(&job.technique, job.backend)?;
-        pa::check_view(&job.scene.still(), &job.view)?;
+        job.view.check(&job.scene.still())?;
         let white = job.exposure.white(&job.scene, &job.view, job.time_s);
         let codes = vec![0; job.view.size[0] * job.view.size[1]];
         Ok(Self { job, renderer, white, codes, last: None })

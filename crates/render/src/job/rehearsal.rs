@@ -3,7 +3,7 @@
 use kelir_scene::Scene;
 
 use super::{Drawing, Job, measure};
-use crate::{RenderError, Technique, pa};
+use crate::{RenderError, Technique};
 
 /// Pixels of width that are drawn.
 const WIDTH: usize = 64;
@@ -27,7 +27,7 @@ pub fn rehearse(mut job: Job) -> (Scene, Result<(), RenderError>) {
 /// How many frames the job has, if its settings and its view at full size are possible.
 fn possible(job: &Job) -> Result<usize, RenderError> {
     job.check()?;
-    pa::check_view(&job.scene.still(), &job.view)?;
+    job.view.check(&job.scene.still())?;
     job.frames()
 }
 

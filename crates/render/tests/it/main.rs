@@ -1,5 +1,5 @@
 //! Integration tests of the renderer.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 mod golden;
 mod reference;

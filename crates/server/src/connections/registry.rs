@@ -110,7 +110,7 @@ fn close_oldest<'a>(lines: impl IntoIterator<Item = &'a Arc<Line>>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
 

@@ -1,5 +1,5 @@
 //! Real sockets against the guard, with a short patience.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use super::*;
 use axum::routing::{get, post};

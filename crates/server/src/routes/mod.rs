@@ -1,6 +1,6 @@
 //! The routes, one module a resource, and the document that is made of them.
 
-#![allow(unused_qualifications)] // `#[utoipa::path]` writes them
+#![allow(unused_qualifications, reason = "`#[utoipa::path]` writes them")]
 
 mod auth;
 mod document;

@@ -1,5 +1,5 @@
 //! The server through its router: what a browser and a researcher can do, and what they cannot.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 mod bad_requests;
 mod client;

@@ -1,7 +1,7 @@
 //! Choices that come in clusters: several trials from each participant are not independent.
 //!
 //! A participant who prefers one technique prefers it in every pair, so n trials of m participants carry less than n answers. Here are
-//! the size of that dependence ([`intraclass`]), and what to do about it: resample participants ([`bootstrap`]), keep the per-trial
+//! the size of that dependence ([`intraclass`](fn@intraclass)), and what to do about it: resample participants ([`bootstrap`](fn@bootstrap)), keep the per-trial
 //! model but take its standard errors from the clusters ([`robust_logit`]), or model the participants ([`mixed_logit`]).
 //! [`independence_warning`] says when a per-trial test is not to be believed.
 

@@ -52,7 +52,7 @@ pub fn t_test_paired(first: &[f64], second: &[f64]) -> Result<TTest> {
     t_test_one_sample(&differences(first, second)?, 0.0)
 }
 
-/// first[i] − second[i].
+/// `first[i] − second[i]`.
 pub(crate) fn differences(first: &[f64], second: &[f64]) -> Result<Vec<f64>> {
     if first.len() != second.len() {
         return Err(StatsError::LengthMismatch {
@@ -79,7 +79,7 @@ impl TTest {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
 
     /// The paper's three tests; expected values from R 4.2.2, `t.test(rep(0:2, c(12, 14, 6)), mu = 1)` and so on.

@@ -66,7 +66,7 @@ pub struct DifferenceInterval {
 
 /// Scales the pooled choices and resamples observers with replacement for the intervals; deterministic for a seed.
 ///
-/// Errors: those of [`scale`]; fewer than two observers with choices; fewer than 2,000 replicates; a level outside (0, 1);
+/// Errors: those of [`scale`](fn@scale); fewer than two observers with choices; fewer than 2,000 replicates; a level outside (0, 1);
 /// more than half of the resamples falling apart.
 pub fn observer_intervals(
     names: &[String],

@@ -2,7 +2,7 @@
 //!
 //! One JOD ("just objectionable difference") between two conditions means that 75% of choices go to the better one (Perez-Ortiz & Mantiuk 2017).
 //! Thurstone's Case V puts a cumulative Gaussian between difference and proportion, Bradley–Terry a logistic; both are fitted by maximum
-//! likelihood to any connected design, complete or not. [`scale`] fits, [`observer_intervals`] resamples whole observers,
+//! likelihood to any connected design, complete or not. [`scale`](fn@scale) fits, [`observer_intervals`] resamples whole observers,
 //! [`odd_observers`] and [`circular_triads`] look at single ones.
 
 mod bootstrap;

@@ -27,7 +27,7 @@ pub struct ObserverFit {
 
 /// Screens observers by how well the scale of all the others predicts their choices.
 ///
-/// Scales without a finite maximum are fitted with Jeffreys' prior. Errors: those of [`scale`]; fewer than three observers.
+/// Scales without a finite maximum are fitted with Jeffreys' prior. Errors: those of [`scale`](fn@scale); fewer than three observers.
 pub fn odd_observers(
     names: &[String],
     observers: &[Observer],

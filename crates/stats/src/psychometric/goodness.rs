@@ -28,7 +28,7 @@ pub struct GoodnessOfFit {
 }
 
 /// Fits the curve and compares its deviance with that of `simulations` observers simulated from it, refitted each (Wichmann & Hill 2001, but
-/// with the refit). Deterministic for a seed. Errors: those of [`fit`]; fewer than 100 simulations.
+/// with the refit). Deterministic for a seed. Errors: those of [`fit`](fn@fit); fewer than 100 simulations.
 pub fn goodness_of_fit(
     levels: &[Level],
     task: &Task,

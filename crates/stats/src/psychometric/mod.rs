@@ -1,8 +1,8 @@
 //! Psychometric functions: how the proportion of correct answers grows with the stimulus.
 //!
 //! ψ(x) = γ + (1 − λ − γ) F(x), with the guess rate γ fixed by the task, the lapse rate λ estimated, and F one of three [`Sigmoid`]s given by its
-//! *threshold* (where F = ½) and *width* (from F = .05 to F = .95), as in psignifit 4. [`fit`] maximises the likelihood,
-//! [`profile_intervals`] reads its intervals off it, [`posterior`] integrates a grid with psignifit's priors, [`goodness_of_fit`] asks whether
+//! *threshold* (where F = ½) and *width* (from F = .05 to F = .95), as in psignifit 4. [`fit`](fn@fit) maximises the likelihood,
+//! [`profile_intervals`] reads its intervals off it, [`posterior`](fn@posterior) integrates a grid with psignifit's priors, [`goodness_of_fit`] asks whether
 //! the curve holds the data at all, and [`Belief`] is the running posterior behind adaptive procedures.
 
 mod belief;

@@ -24,13 +24,13 @@ pub struct ProfileIntervals {
 /// All values whose likelihood, the other parameters at their best, is within χ²₁'s quantile of the maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ProfileInterval {
-    /// Lower end; `None` where the data don't bound it within the range searched by [`fit`](super::fit).
+    /// Lower end; `None` where the data don't bound it within the range searched by [`fit`](fn@super::fit).
     pub low: Option<f64>,
     /// Upper end, likewise.
     pub high: Option<f64>,
 }
 
-/// Fits as [`fit`](super::fit) does and adds profile-likelihood intervals. Errors: those of the fit; a level outside (0, 1).
+/// Fits as [`fit`](fn@super::fit) does and adds profile-likelihood intervals. Errors: those of the fit; a level outside (0, 1).
 pub fn profile_intervals(levels: &[Level], task: &Task, level: f64) -> Result<ProfileIntervals> {
     StatsError::open_probability("level", level)?;
     task.check()?;

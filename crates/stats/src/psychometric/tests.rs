@@ -1,4 +1,4 @@
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 //! Oracles: tests/data/psychometric.py and quest_plus.py (psignifit 4.3, questplus 2023.1, and the definitions in 30-digit arithmetic).
 
 use super::*;

@@ -58,7 +58,7 @@ impl PreferenceDesign {
         Ok(())
     }
 
-    /// counts[k] participants chose the target k times. Participants come one after the other, so that a larger study is the smaller one and more.
+    /// `counts[k]` participants chose the target k times. Participants come one after the other, so that a larger study is the smaller one and more.
     fn counts(&self, random: &mut Random) -> Vec<u64> {
         let mut counts = vec![0; self.pairs as usize + 1];
         for _ in 0..self.participants {

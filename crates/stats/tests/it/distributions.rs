@@ -1,4 +1,8 @@
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that fails here says where, and prints what it measured"
+)]
 
 use kelir_stats::numerics;
 

@@ -163,9 +163,10 @@ async fn begin(side: &Side, sessions: usize) -> Result<(Vec<[String; 2]>, Times)
 
 /// Every answer of these sessions, as a page sends it.
 fn answers(sessions: &[[String; 2]]) -> Vec<String> {
+    let kind = kelir_study::TrialKind::default().name();
     let answer = |[id, token]: &[String; 2], trial: usize| {
         let body = format!(
-            r#"{{"choice":"left","rt":{}.125,"onset":10234.5,"input":"mouse","scale":1,"arrangement":"beside","device_pixel_ratio":1,"viewport":[1280,800],"refresh_hz":60,"hidden_ms":0,"time_elapsed":20000,"trial_type":"two-alternative","plugin_version":"0.1.0","reload_count":0,"timestamp":"2026-11-28T08:00:00.000Z"}}"#,
+            r#"{{"choice":"left","rt":{}.125,"onset":10234.5,"input":"mouse","scale":1,"arrangement":"beside","device_pixel_ratio":1,"viewport":[1280,800],"refresh_hz":60,"hidden_ms":0,"time_elapsed":20000,"trial_type":"{kind}","plugin_version":"0.1.0","reload_count":0,"timestamp":"2026-11-28T08:00:00.000Z"}}"#,
             500 + trial
         );
         request("PUT", &format!("/api/v1/sessions/{id}/trials/{trial}"), token, &body)

@@ -89,7 +89,7 @@ impl Padded {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
     use proptest::prelude::*;
 

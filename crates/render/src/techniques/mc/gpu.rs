@@ -16,7 +16,7 @@ use crate::gpu::{Gpu, Output};
 pub const WGSL: &str = include_str!("mc.wgsl");
 
 /// Invocations a workgroup, as in the shader.
-const WORKGROUP: u32 = 64;
+pub(super) const WORKGROUP: u32 = 64;
 
 /// Jobs drawn in one submission: 64 MiB of coloured sums.
 const JOBS: usize = 1 << 18;

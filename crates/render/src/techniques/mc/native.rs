@@ -6,6 +6,9 @@ use super::points::{self, Points, REPLICATES};
 use super::tilted::{Seen, Tilted};
 use crate::simd::Isa;
 
+/// f32 sums of this many steps are added to f64 ones: rounding stays below 1e-6 however many points.
+pub(super) const FLUSH: usize = 32;
+
 /// Sums of one pixel's and one emitter's replicates, per channel.
 pub type Sums<const C: usize> = [[f64; REPLICATES]; C];
 
@@ -62,8 +65,6 @@ impl Sampler<'_> {
 
     #[inline(always)]
     fn pixel<const C: usize, const AREA: bool>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
-        /// f32 sums of this many steps are added to f64 ones: rounding stays below 1e-6 however many points.
-        const FLUSH: usize = 32;
         let emitter = &self.plan.emitters[k];
         let key =
             points::stream(points::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);

@@ -100,7 +100,7 @@ impl Plan {
         masks: &[impl AsRef<Padded>],
         geometric: bool,
     ) -> Result<Self, RenderError> {
-        crate::pa::check_view(theatre, view)?;
+        view.check(theatre)?;
         let mut emitters: Vec<_> =
             theatre.lamp.emitters.iter().map(|emitter| lamp(theatre, view, &emitter.shape)).collect();
         if let Ambient::Dome { .. } = theatre.ambient {

@@ -1,4 +1,4 @@
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -465,4 +465,13 @@ fn over_a_pixel_visibility_is_mean_over_mean() {
     let [mc, oracle, of_ratios, at_centre] = sums.map(|s: f64| (s / tested).abs());
     assert!(tested > 40.0 && mc < 1.5e-5 && oracle < 1e-6, "{tested} {mc:e} {oracle:e}");
     assert!(of_ratios > 4e-5 && at_centre > 4e-5, "{of_ratios:e} {at_centre:e}");
+}
+
+/// What stands in WGSL and in Rust is the same.
+#[test]
+fn constants_are_those_of_the_shader() {
+    use crate::gpu::tests::same_constants;
+    same_constants!(gpu::WGSL, {
+        "FLUSH": native::FLUSH, "REPLICATES": REPLICATES, "workgroup_size": gpu::WORKGROUP,
+    });
 }

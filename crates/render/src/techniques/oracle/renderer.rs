@@ -7,7 +7,7 @@ use super::{Knobs, Point, Visibility, visibility};
 use crate::project::pixel_m;
 use crate::{Frame, Layer, Meter, RenderError, Renderer, Stats, View, albedo, ambient, encode, irradiance};
 
-/// Draws with [`visibility`] at every pixel.
+/// Draws with [`visibility`](fn@visibility) at every pixel.
 #[derive(Debug)]
 pub struct Oracle {
     knobs: Knobs,
@@ -35,7 +35,7 @@ impl Oracle {
     }
 
     fn check(theatre: &Theatre, view: &View) -> Result<(), RenderError> {
-        crate::pa::check_view(theatre, view)?;
+        view.check(theatre)?;
         let refuse = |reason| Err(RenderError::Inapplicable { technique: "oracle", reason });
         for (i, plane) in theatre.planes.iter().enumerate() {
             if plane.tilt_deg != [0.0; 2] && matches!(theatre.ambient, Ambient::Dome { .. }) {

@@ -26,7 +26,7 @@ use super::dome::{self, DomeLight, DomeMap};
 use super::kept::Tables;
 use super::plan::Plan;
 use super::tiles::Tiles;
-use super::{Knobs, Skips, Weights, plan, shadow_map};
+use super::{Knobs, Skips, Weights, shadow_map};
 use crate::encode::Srgb;
 use crate::gpu::Gpu;
 use crate::{Frame, Layer, RenderError, Renderer, Stats, View};
@@ -315,7 +315,7 @@ impl OnGpu {
 
 impl Renderer for OnGpu {
     fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
-        plan::check_view(theatre, view)?;
+        view.check(theatre)?;
         let pixels = view.size[0] * view.size[1];
         let kind = if self.knobs.weights == Weights::Area { "Vgeo" } else { "Virr" };
         let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
@@ -345,7 +345,7 @@ impl Renderer for OnGpu {
         white: f64,
         out: &mut [u32],
     ) -> Result<Stats, RenderError> {
-        plan::check_view(theatre, view)?;
+        view.check(theatre)?;
         if out.len() != view.size[0] * view.size[1] {
             let [w, h] = view.size;
             return Err(RenderError::View(format!("{} pixels given for {w}x{h}", out.len())));

@@ -5,8 +5,8 @@
 //! bilinear the mean is a finite sum, so the native code draws it exactly. Drawn with n × n sub-samples instead, a straight
 //! edge errs by at most 1 / (8 w n²) where the box is w pixels wide.
 //!
-//! A disk is cut into strips, a tilted plane is looked up piece by piece ([`tilted`]), and light from the dome is a convolution
-//! ([`dome`]).
+//! A disk is cut into strips, a tilted plane is looked up piece by piece (`tilted`), and light from the dome is a convolution
+//! (`dome`).
 //!
 //! With several planes the mean over the pixel of a product is not the product of means: where a box is narrower than
 //! four pixels each pixel is cut into n × n parts, n = ⌈4 / w⌉ (at most 4). What is left is a covariance inside a part of
@@ -31,7 +31,6 @@ use serde::{Deserialize, Serialize};
 use crate::{Backend, RenderError, Renderer};
 
 pub use native::Native;
-pub use plan::check_view;
 pub use skips::Skips;
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique

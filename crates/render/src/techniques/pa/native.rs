@@ -199,7 +199,7 @@ impl Native {
 
 impl Renderer for Native {
     fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
-        super::plan::check_view(theatre, view)?;
+        view.check(theatre)?;
         let pixels = view.size[0] * view.size[1];
         let mut radiance = [0, 1, 2].map(|_| vec![0f32; pixels]);
         let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
@@ -225,7 +225,7 @@ impl Renderer for Native {
         white: f64,
         out: &mut [u32],
     ) -> Result<Stats, RenderError> {
-        super::plan::check_view(theatre, view)?;
+        view.check(theatre)?;
         if out.len() != view.size[0] * view.size[1] {
             return Err(RenderError::View(format!(
                 "{} pixels given for {}x{}",

@@ -68,23 +68,6 @@ fn refuse(reason: String) -> RenderError {
     RenderError::Inapplicable { technique: "pa", reason }
 }
 
-/// Checks the view against the screen: sizes above zero, and square pixels to within half a pixel.
-pub fn check_view(theatre: &Theatre, view: &View) -> Result<(), RenderError> {
-    let [w, h] = view.size;
-    if w == 0 || h == 0 || w > 1 << 16 || h > 1 << 16 {
-        return Err(RenderError::View(format!("size = {w}x{h}: each side from 1 to 65536 pixels")));
-    }
-    let (screen_w, screen_h) = (theatre.screen.width_m, theatre.screen.height_m);
-    let ideal = w as f64 * screen_h / screen_w;
-    if (ideal - h as f64).abs() > 0.5 && (h as f64 * screen_w / screen_h - w as f64).abs() > 0.5 {
-        return Err(RenderError::View(format!(
-            "size = {w}x{h}: the screen is {screen_w} m x {screen_h} m, so {w} pixels of width need {} of height",
-            ideal.round().max(1.0)
-        )));
-    }
-    Ok(())
-}
-
 impl Plan {
     /// Errors: what this code can't draw truthfully.
     pub fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
@@ -97,7 +80,7 @@ impl Plan {
     }
 
     fn of(theatre: &Theatre, view: &View, knobs: &Knobs, all: bool) -> Result<Self, RenderError> {
-        check_view(theatre, view)?;
+        view.check(theatre)?;
         let lamp = theatre.lamp.position_m;
         if let Some(i) = theatre.planes.iter().position(is_tilted) {
             let tilt = theatre.planes[i].tilt_deg;

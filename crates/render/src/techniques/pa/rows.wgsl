@@ -23,12 +23,15 @@ override WIDE: bool = false;
 const SHELF = 64u;
 const BLOCK = 32u;
 
+// Words side by side in a texture of them.
+const ROW = 2048u;
+
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var plan: texture_2d<u32>;
 @group(0) @binding(2) var table: texture_2d_array<u32>;
 
 fn words(at: u32) -> vec4<u32> {
-    return textureLoad(plan, vec2<u32>(at % 2048u, at / 2048u), 0);
+    return textureLoad(plan, vec2<u32>(at % ROW, at / ROW), 0);
 }
 
 // Entries of four rows from y on.

@@ -41,6 +41,9 @@ override ALBEDO: bool = false;
 
 const ACROSS = 64u;
 
+// Words side by side in a texture of them.
+const ROW = 2048u;
+
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var plan: texture_2d<u32>;
 // Layer emitter * CHANNELS + c.
@@ -58,7 +61,7 @@ const ACROSS = 64u;
 const LOWEST = 114u << 23u;
 
 fn words(at: u32) -> vec4<u32> {
-    return textureLoad(plan, vec2<u32>(at % 2048u, at / 2048u), 0);
+    return textureLoad(plan, vec2<u32>(at % ROW, at / ROW), 0);
 }
 
 fn bin(k: u32) -> u32 {
@@ -78,7 +81,7 @@ fn pixels(layer: u32, x: u32, y: u32) -> vec4<f32> {
 }
 
 fn lattice(at: u32) -> f32 {
-    return bitcast<f32>(textureLoad(maps, vec2<u32>(at % 2048u, at / 2048u), 0).x);
+    return bitcast<f32>(textureLoad(maps, vec2<u32>(at % ROW, at / ROW), 0).x);
 }
 
 // What a plane hides of the dome at one pixel: a cubic between lattice points. `columns` and `rows` say where the windows are, four

@@ -26,7 +26,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Of `plane`: R_y(tilt[1]) · R_x(tilt[0]).
+    /// Of `plane`: `R_y(tilt[1]) · R_x(tilt[0])`.
     pub fn new(plane: &Plane) -> Self {
         let turn = |v: DVec3| project::turned(plane, v);
         let grid = DVec2::new(plane.mask.width as f64, plane.mask.height as f64);

@@ -28,12 +28,15 @@ override WIDE: bool = false;
 
 const ACROSS = 64u;
 
+// Words side by side in a texture of them.
+const ROW = 2048u;
+
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var plan: texture_2d<u32>;
 @group(0) @binding(2) var table: texture_2d_array<u32>;
 
 fn words(at: u32) -> vec4<u32> {
-    return textureLoad(plan, vec2<u32>(at % 2048u, at / 2048u), 0);
+    return textureLoad(plan, vec2<u32>(at % ROW, at / ROW), 0);
 }
 
 // The table's entry, low word first; its texels hold four rows, see table.wgsl.

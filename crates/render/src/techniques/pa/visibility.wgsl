@@ -44,6 +44,9 @@ const BLOCK = 32u;
 // Cells side by side in the target.
 const ACROSS = 64u;
 
+// Words side by side in a texture of them.
+const ROW = 2048u;
+
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var plan: texture_2d<u32>;
 @group(0) @binding(2) var sums: texture_2d<u32>;
@@ -53,7 +56,7 @@ const ACROSS = 64u;
 @group(0) @binding(5) var slopes: texture_2d_array<u32>;
 
 fn words(at: u32) -> vec4<u32> {
-    return textureLoad(plan, vec2<u32>(at % 2048u, at / 2048u), 0);
+    return textureLoad(plan, vec2<u32>(at % ROW, at / ROW), 0);
 }
 
 // One plane of one piece as a tile sees it: where its combined rows begin, which texels they hold, which of a column's texels is asked for.

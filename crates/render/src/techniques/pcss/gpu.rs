@@ -10,7 +10,7 @@ use crate::gpu::{Gpu, Output};
 pub(super) const WGSL: &str = include_str!("pcss.wgsl");
 
 /// Invocations a workgroup, as in the shader.
-const WORKGROUP: u32 = 64;
+pub(super) const WORKGROUP: u32 = 64;
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]

@@ -8,7 +8,7 @@
 //! over which the map is then filtered. Where the search finds no blocker, the pixel is lit: thin figures that it misses
 //! are lost, and so is their shadow.
 //!
-//! What it comes to on a stage of translucent puppets: every plane has a map of its own ([`map`]) of depth and
+//! What it comes to on a stage of translucent puppets: every plane has a map of its own (`map`) of depth and
 //! transmittance; a texel that is not clear blocks; the filter averages transmittances, and those of several planes
 //! multiply. An upright plane has one depth, so its penumbra estimate is exact and what is left are the map's resolution
 //! and the samples; the depths of a tilted plane are averaged, as Fernando does, whatever that costs. `area` pixels spread
@@ -176,7 +176,7 @@ impl Pcss {
         view: &View,
         layers: bool,
     ) -> Result<(Vec<Row>, Stats), RenderError> {
-        crate::pa::check_view(theatre, view)?;
+        view.check(theatre)?;
         if matches!(theatre.ambient, Ambient::Dome { .. }) {
             return Err(refuse("ambient.model = \"dome\": no shadow map shows a whole dome".into()));
         }

@@ -1,4 +1,4 @@
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use glam::{DVec2, DVec3};
 use kelir_scene::{Albedo, Emitter, Exposure, Lamp, Mask, Plane, Screen, Texels};
@@ -312,4 +312,10 @@ fn the_disk_is_filled_evenly() {
         rings[((4.0 * at.length_squared()) as usize).min(3)] += 1;
     }
     assert!(rings.iter().all(|n: &i32| (n - 1024).abs() < 64), "{rings:?}");
+}
+
+/// What stands in WGSL and in Rust is the same.
+#[test]
+fn constants_are_those_of_the_shader() {
+    crate::gpu::tests::same_constants!(gpu::WGSL, { "workgroup_size": gpu::WORKGROUP });
 }

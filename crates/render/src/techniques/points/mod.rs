@@ -53,7 +53,7 @@ pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, Re
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use std::sync::Arc;
 
     use glam::DVec3;

@@ -10,6 +10,9 @@ use super::passes::Passes;
 use super::screen::layered;
 use crate::RenderError;
 
+/// Lanes of a workgroup, each with a row or a column.
+pub const WORKGROUP: u32 = 32;
+
 /// The shader's `Params`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -119,7 +122,7 @@ fn build(passes: &Passes, mask: &Arc<Mask>, wide: bool) -> Result<Table, RenderE
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &bind, &[]);
-            pass.dispatch_workgroups((lanes as u32).div_ceil(32), 1, 1);
+            pass.dispatch_workgroups((lanes as u32).div_ceil(WORKGROUP), 1, 1);
         }
         channels.push(whole);
     }

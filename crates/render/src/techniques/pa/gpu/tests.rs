@@ -1,4 +1,4 @@
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use glam::DVec3;
 use kelir_scene::{Albedo, Emitter, EmitterShape, Exposure, Lamp, Mask, Plane, Screen, Texels};
@@ -377,4 +377,18 @@ fn structs_are_laid_out_as_the_shaders_expect() {
             dome,
         }
     );
+}
+
+/// What stands in WGSL and in Rust is the same.
+#[test]
+fn constants_are_those_of_the_shaders() {
+    use crate::encode::LOWEST;
+    use crate::gpu::tests::same_constants;
+    use words::ROW;
+    use work::{ACROSS, BLOCK, SHELF};
+    same_constants!(include_str!("../shade.wgsl"), { "ACROSS": ACROSS, "LOWEST": LOWEST, "ROW": ROW });
+    same_constants!(include_str!("../visibility.wgsl"), { "ACROSS": ACROSS, "BLOCK": BLOCK, "ROW": ROW, "SHELF": SHELF });
+    same_constants!(include_str!("../rows.wgsl"), { "BLOCK": BLOCK, "ROW": ROW, "SHELF": SHELF });
+    same_constants!(include_str!("../tilted.wgsl"), { "ACROSS": ACROSS, "ROW": ROW });
+    same_constants!(include_str!("../table.wgsl"), { "workgroup_size": tables::WORKGROUP });
 }

@@ -15,7 +15,7 @@ use crate::RenderError;
 pub const ACROSS: usize = 64;
 /// Blocks side by side in the target of combined rows, and entries of a block, as in the shaders.
 pub const SHELF: usize = 64;
-const BLOCK: usize = 32;
+pub const BLOCK: usize = 32;
 /// Tiles of a batch: a picture of 1920×1080 is one.
 pub const MOST_TILES: usize = 8192;
 /// Rows of the combined rows' target: 32 MiB.

@@ -23,7 +23,7 @@ multiversion! {
 }
 
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
+#[allow(clippy::too_many_arguments, reason = "what an inner loop reads, each in a register")]
 fn grey_two_generic(
     srgb: &Srgb,
     lit: &[f32],

@@ -141,7 +141,7 @@ impl Job<'_> {
     }
 
     /// Transmittances of one look-up in one channel (entry `e`) at the sub-pixels of `span` of sub-row `row`.
-    #[allow(clippy::too_many_arguments)]
+    #[allow(clippy::too_many_arguments, reason = "what an inner loop reads, each in a register")]
     fn transmittance(
         &self,
         e: usize,
