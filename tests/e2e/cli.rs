@@ -54,6 +54,60 @@ fn scene(folder: &Path, edit: impl Fn(&str) -> String) -> String {
     write(folder, "scene.toml", &edit(SCENE))
 }
 
+/// A knob that the technique does not have was taken and ignored.
+#[test]
+fn knobs_are_those_of_the_technique() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.png");
+    let draw = |technique: &'static str, knobs: &[&'static str]| {
+        let mut args =
+            vec!["render", "kayon", "--technique", technique, "--size", "64x36", "--backend", "cpu", "-o"];
+        args.push(out.to_str().unwrap());
+        args.extend(knobs);
+        args.into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let no = |technique, knobs: &[&'static str], phrases: &[&str]| {
+        let args = draw(technique, knobs);
+        refused(&args.iter().map(String::as_str).collect::<Vec<_>>(), phrases);
+        assert!(!out.exists());
+    };
+    no(
+        "pa",
+        &["--spp", "999999999", "--lights", "7"],
+        &["lights = 7: is a knob of points, not of pa", "spp = 999999999: is a knob of mc"],
+    );
+    no("mc", &["--spp", "0"], &["spp = 0: must be a whole number from 1 to 1048576"]);
+    no("mc", &["--spp", "many"], &["spp = \"many\": must be a whole number"]);
+    no("points", &["--lights", "7"], &["lights = 7: must be a square number"]);
+    no("pcss", &["--bias", "-0.1"], &["bias_m = -0.1: must be a number from 0"]);
+    no("pa", &["--weights", "even"], &["weights = \"even\": must be one of area and irradiance"]);
+    no("pa", &["--knob", "spilt=2"], &["spilt = 2: pa has no such knob (did you mean split?)"]);
+    no("pa", &["--knob", "split"], &["--knob split: write NAME=VALUE"]);
+    no("pa", &["--split", "2", "--knob", "split=3"], &["split is turned twice"]);
+    refused(&["technique", "psc"], &["must be one of pa, mc, points, pcss and oracle (did you mean pcss?)"]);
+    // The same by either way, and other than when nothing is turned.
+    let picture = |knobs: &[&'static str]| {
+        let args = draw("mc", knobs);
+        kelir_ok(&args.iter().map(String::as_str).collect::<Vec<_>>());
+        let bytes = std::fs::read(&out).unwrap();
+        std::fs::remove_file(&out).unwrap();
+        bytes
+    };
+    let turned = picture(&["--spp", "16", "--seed", "2"]);
+    assert!(turned == picture(&["--knob", "spp=16", "--knob", "seed=2"]));
+    assert!(turned != picture(&["--spp", "16"]));
+    // What is listed is what may be turned.
+    let table = kelir_ok(&["technique", "mc"]);
+    assert!(
+        table.contains("spp") && table.contains("64") && table.contains("a whole number from 1 to 1048576"),
+        "{table}"
+    );
+    let document: serde_json::Value = serde_json::from_str(&kelir_ok(&["technique", "--json"])).unwrap();
+    let names: Vec<&str> =
+        document.as_array().unwrap().iter().map(|t| t["technique"].as_str().unwrap()).collect();
+    assert_eq!(names, ["pa", "mc", "points", "pcss", "oracle"]);
+}
+
 #[test]
 fn ttest_prints_the_papers_numbers() {
     let first = kelir_ok(&["stats", "ttest", "--counts", "0:12,1:14,2:6", "--mu", "1"]);

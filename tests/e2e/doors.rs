@@ -75,7 +75,10 @@ const SQUARE: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height
 /// Runs `kelir COMMAND SCENE …` on the native code at the study's size; answers what `--stats json` prints.
 fn draw(command: &str, folder: &Path, technique: &str, more: &[&str], output: &Path) -> Value {
     let scene = folder.join("scenes/lamp.toml");
-    let mut args = vec![command, scene.to_str().unwrap(), "--technique", technique, "--spp", "16"];
+    let mut args = vec![command, scene.to_str().unwrap(), "--technique", technique];
+    if technique == "mc" {
+        args.extend(["--spp", "16"]);
+    }
     args.extend(["--size", "96x54", "--backend", "cpu", "--stats", "json", "-o", output.to_str().unwrap()]);
     args.extend(more);
     serde_json::from_str(&kelir_ok(&args)).unwrap()

@@ -36,7 +36,7 @@ enum Task {
     Test,
     /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
     Bench,
-    /// Attack the release binary: kills, disorder, floods, hostile bytes, a full disk. About five minutes; `--seed`, `--rounds`, `--seconds` and others
+    /// Attack the release binary: kills, disorder, floods, hostile bytes, a full disk. About three minutes; `--seed`, `--rounds`, `--seconds` and others
     /// are the attacks' own, as are their names (`cargo xtask soak --rounds 5 kill`).
     Soak {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

@@ -28,6 +28,8 @@ enum Command {
     Animate(commands::animate::Args),
     /// Write a study of your own to begin with: a folder that `kelir serve --data` serves.
     New(commands::new::Args),
+    /// What draws, and what can be turned on it.
+    Technique(commands::technique::Args),
     /// Look at scene files.
     #[command(subcommand)]
     Scene(commands::scene::Command),
@@ -78,6 +80,7 @@ fn main() -> ExitCode {
         Command::Render(args) => commands::render::run(args),
         Command::Animate(args) => commands::animate::run(args),
         Command::New(args) => commands::new::run(&args),
+        Command::Technique(args) => commands::technique::run(&args),
         Command::Scene(command) => commands::scene::run(command),
         Command::Study(command) => commands::study::run(command),
         Command::Bench(command) => commands::bench::run(command),

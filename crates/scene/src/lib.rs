@@ -24,7 +24,7 @@ mod weave;
 pub use assets::{Assets, DirAssets};
 pub use colour::srgb_to_linear;
 pub use problem::{Problem, SceneErrors};
-pub use read::did_you_mean;
+pub use read::{did_you_mean, list};
 pub use scene::Scene;
 pub use theatre::*;
 pub use timeline::Timeline;

@@ -334,7 +334,7 @@ pub(crate) fn shorten(text: &str) -> Option<String> {
 }
 
 /// `a, b and c`, at most twenty of them.
-pub(crate) fn list<S: AsRef<str>>(names: &[S]) -> String {
+pub fn list<S: AsRef<str>>(names: &[S]) -> String {
     let mut names: Vec<&str> = names.iter().map(S::as_ref).collect();
     let more = names.len().saturating_sub(20);
     names.truncate(20);

@@ -17,12 +17,7 @@ pub struct RenderMaker {}
 
 /// A condition's technique with its knobs; what is wrong with them.
 pub(crate) fn technique(name: &str, knobs: &BTreeMap<String, Value>) -> Result<Technique, String> {
-    let mut object: serde_json::Map<String, Value> = knobs.clone().into_iter().collect();
-    object.insert("technique".to_owned(), Value::from(name));
-    let technique: Technique =
-        serde_json::from_value(Value::Object(object)).map_err(|error| error.to_string())?;
-    technique.check().map_err(|error| error.to_string())?;
-    Ok(technique)
+    Technique::parse(name, knobs).map_err(|error| error.to_string())
 }
 
 /// The camera with these settings, which are those of the study's smallest size; what is wrong with them. In a picture `magnification` times as

@@ -4,13 +4,15 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
+use clap::builder::PossibleValuesParser;
 use kelir_render::exposure::Rule;
 use kelir_render::job::{Job, Output};
-use kelir_render::{Backend, Pixel, RenderError, Technique, View, mc, oracle, pa, pcss, points};
+use kelir_render::{Backend, Pixel, RenderError, Technique, View};
 use kelir_scene::{Scene, Theatre};
 use kelir_server::shipped;
 use serde::Serialize;
 
+use super::knobs::Turned;
 use crate::bad_input;
 use crate::output::print_json;
 
@@ -19,52 +21,11 @@ use crate::output::print_json;
 pub struct Drawing {
     /// Scene file (TOML), or the name of a scene that ships: `kelir scene list`.
     pub scene: PathBuf,
-    /// What draws: pa (summed-area tables), mc (Monte Carlo, the ground truth), points (point lights),
-    /// pcss (percentage-closer soft shadows), oracle (slow f64 sums).
-    #[arg(long, value_enum)]
-    pub technique: TechniqueName,
-    /// Samples a pixel (mc), rounded up to a multiple of 16 replicates.
-    #[arg(long, default_value_t = 64)]
-    pub spp: u32,
-    /// Seed of the sample points (mc, pcss): same seed and count, same bytes.
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// In place of --spp: enough samples for this root mean square error over penumbra, in units of full scale (mc).
-    #[arg(long)]
-    pub target_error: Option<f64>,
-    /// In place of --spp: as many samples as this many seconds allow; the count is recorded and replays the image (mc).
-    #[arg(long, value_name = "SECONDS")]
-    pub time_limit: Option<f64>,
-    /// Split each emitter into K × K pieces (pa): 1 is the paper's way.
-    #[arg(long, value_name = "K", default_value_t = 1)]
-    pub split: u32,
-    /// How the pieces of a split emitter weigh (pa): area tends to the geometric visibility, irradiance to what a meter reads.
-    #[arg(long, value_enum, default_value = "area")]
-    pub weights: WeightsName,
-    /// Strips that a disk is cut into (pa).
-    #[arg(long, default_value_t = pa::Knobs::default().strips)]
-    pub strips: u32,
-    /// Point lights that stand for each emitter, a square number (points).
-    #[arg(long, value_name = "N", default_value_t = points::Knobs::default().lights)]
-    pub lights: u32,
-    /// Tables of the puppets themselves, or of a shadow map drawn from the lamp, as in the paper (pa).
-    #[arg(long, value_enum, default_value = "exact")]
-    pub variant: VariantName,
-    /// Samples a side of that shadow map (pa), or of each puppet's (pcss).
-    #[arg(long, value_name = "N", default_value_t = pa::Knobs::default().map_size)]
-    pub map_size: u32,
-    /// Lattice points per distance of a puppet for the dome's light (pa).
-    #[arg(long, value_name = "N", default_value_t = pa::Knobs::default().dome_steps)]
-    pub dome_steps: u32,
-    /// Samples of the search for blockers (pcss).
-    #[arg(long, value_name = "N", default_value_t = pcss::Knobs::default().blocker_samples)]
-    pub blocker_samples: u32,
-    /// Samples of the filter (pcss).
-    #[arg(long, value_name = "N", default_value_t = pcss::Knobs::default().filter_samples)]
-    pub filter_samples: u32,
-    /// Depth bias: a puppet no further than this before the screen casts no shadow (pcss).
-    #[arg(long, value_name = "METRES", default_value_t = pcss::Knobs::default().bias_m)]
-    pub bias: f64,
+    /// What draws; `kelir technique` says what each is, and what can be turned on it.
+    #[arg(long, value_parser = PossibleValuesParser::new(Technique::all().map(|technique| technique.name())))]
+    pub technique: String,
+    #[command(flatten)]
+    turned: Turned,
     /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 1920 wide.
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[usize; 2]>,
@@ -103,39 +64,6 @@ enum StatsFormat {
     Json,
 }
 
-/// Names of the techniques on the command line.
-#[derive(Clone, Copy, ValueEnum)]
-pub enum TechniqueName {
-    /// Summed-area tables.
-    Pa,
-    /// Monte Carlo.
-    Mc,
-    /// Point lights averaged.
-    Points,
-    /// Percentage-closer soft shadows.
-    Pcss,
-    /// f64 sums.
-    Oracle,
-}
-
-/// Names of PA's variants on the command line.
-#[derive(Clone, Copy, ValueEnum)]
-pub enum VariantName {
-    /// Exact boxes.
-    Exact,
-    /// The paper's pipeline.
-    ShadowMap,
-}
-
-/// Names of the weightings on the command line.
-#[derive(Clone, Copy, ValueEnum)]
-pub enum WeightsName {
-    /// 1/k² each.
-    Area,
-    /// By unshadowed irradiance.
-    Irradiance,
-}
-
 /// Names of the pixel rules on the command line.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum PixelName {
@@ -168,7 +96,7 @@ impl Drawing {
     pub fn job(&self, output: Output, exposure: ExposureName, time_s: Option<f64>) -> Result<Job> {
         let scene = self.load()?;
         Ok(Job {
-            technique: self.technique(),
+            technique: self.technique()?,
             view: self.view(&scene.still()),
             scene,
             backend: self.backend,
@@ -180,41 +108,9 @@ impl Drawing {
         })
     }
 
-    /// The technique with its knobs.
-    pub fn technique(&self) -> Technique {
-        match self.technique {
-            TechniqueName::Pa => Technique::Pa(pa::Knobs {
-                split: self.split,
-                weights: match self.weights {
-                    WeightsName::Area => pa::Weights::Area,
-                    WeightsName::Irradiance => pa::Weights::Irradiance,
-                },
-                strips: self.strips,
-                variant: match self.variant {
-                    VariantName::Exact => pa::Variant::Exact,
-                    VariantName::ShadowMap => pa::Variant::ShadowMap,
-                },
-                map_size: self.map_size,
-                dome_steps: self.dome_steps,
-            }),
-            TechniqueName::Mc => Technique::Mc(mc::Knobs {
-                spp: self.spp,
-                seed: self.seed,
-                target_error: self.target_error,
-                time_limit_s: self.time_limit,
-            }),
-            TechniqueName::Points => {
-                Technique::Points(points::Knobs { lights: self.lights, ..points::Knobs::default() })
-            }
-            TechniqueName::Pcss => Technique::Pcss(pcss::Knobs {
-                blocker_samples: self.blocker_samples,
-                filter_samples: self.filter_samples,
-                map_size: self.map_size,
-                seed: self.seed,
-                bias_m: self.bias,
-            }),
-            TechniqueName::Oracle => Technique::Oracle(oracle::Knobs::default()),
-        }
+    /// The technique with its knobs; one that it does not have is refused.
+    pub fn technique(&self) -> Result<Technique> {
+        Technique::parse(&self.technique, &self.turned.0).map_err(render_error)
     }
 
     /// Reads and validates the scene; every problem is named.

@@ -1,11 +1,13 @@
 //! The techniques: adding one is a new folder here, one variant of [`Technique`] and one line in each `match` on it.
 
+pub mod knobs;
 pub mod mc;
 pub mod oracle;
 pub mod pa;
 pub mod pcss;
 pub mod points;
 
+use knobs::Knob;
 use serde::{Deserialize, Serialize};
 
 use crate::{RenderError, Renderer};
@@ -46,6 +48,28 @@ impl Technique {
             Self::Points(_) => points::REVISION,
             Self::Pcss(_) => pcss::REVISION,
             Self::Oracle(_) => oracle::REVISION,
+        }
+    }
+
+    /// What can be turned on it.
+    pub fn knobs(&self) -> &'static [Knob] {
+        match self {
+            Self::Pa(_) => pa::KNOBS,
+            Self::Mc(_) => mc::KNOBS,
+            Self::Points(_) => points::KNOBS,
+            Self::Pcss(_) => pcss::KNOBS,
+            Self::Oracle(_) => oracle::KNOBS,
+        }
+    }
+
+    /// What it is, in a few words.
+    pub fn about(&self) -> &'static str {
+        match self {
+            Self::Pa(_) => "summed-area tables",
+            Self::Mc(_) => "Monte Carlo, the ground truth",
+            Self::Points(_) => "point lights averaged",
+            Self::Pcss(_) => "percentage-closer soft shadows",
+            Self::Oracle(_) => "slow f64 sums, for crops and tests",
         }
     }
 

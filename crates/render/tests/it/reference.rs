@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use kelir_render::techniques::knobs::Knob;
 use kelir_render::{Backend, Pixel, Technique, View, renderer};
 use kelir_scene::Theatre;
 
@@ -99,6 +100,21 @@ fn list(names: &BTreeSet<String>) -> String {
     if names.is_empty() { "–".to_owned() } else { names.join(", ") }
 }
 
+fn knobs() -> String {
+    let table = |technique: Technique| {
+        let stand = technique.stand();
+        let row = |knob: &Knob| {
+            let stands = stand.get(knob.name).map_or_else(|| "–".to_owned(), |value| format!("`{value}`"));
+            let unit = if knob.unit.is_empty() { "–" } else { knob.unit };
+            format!("| `{}` | {unit} | {stands} | {} | {} |\n", knob.name, knob.range, knob.about)
+        };
+        let rows: String = technique.knobs().iter().map(row).collect();
+        let head = "| knob | unit | default | must be | what it does |\n|---|---|---|---|---|\n";
+        format!("`{}`: {}\n\n{head}{rows}\n", technique.name(), technique.about())
+    };
+    Technique::all().map(table).concat()
+}
+
 fn page(given: &BTreeMap<&str, Given>) -> String {
     let rows = |cell: &dyn Fn(&Given) -> String| {
         let lines: Vec<String> =
@@ -111,8 +127,10 @@ fn page(given: &BTreeMap<&str, Given>) -> String {
     let channels: Vec<String> =
         CHANNELS.iter().map(|(name, unit, meaning)| format!("| `{name}` | {unit} | {meaning} |")).collect();
     format!(
-        "# EXR channels and the counts of `--json`\n\n\
+        "# Techniques: their knobs, EXR channels and the counts of `--json`\n\n\
          Made of what each technique gives: `KELIR_BLESS=1 cargo test -p kelir-render --test it reference` writes this page, and a test compares it.\n\n\
+         ## Knobs\n\n\
+         As keys of a study's `[conditions.NAME]`, as `--knob NAME=VALUE` or an option of that name; `kelir technique NAME` prints them.\n\n{}\n\
          ## Channels of an `.exr`\n\n\
          All are f32, rows from top to bottom. E stands for an emitter's name (`dome` for the dome), C for R, G or B.\n\n\
          | channel | unit | what it is |\n|---|---|---|\n{}\n\n\
@@ -127,6 +145,7 @@ fn page(given: &BTreeMap<&str, Given>) -> String {
          `stats.values`:\n\n| name | what it is |\n|---|---|\n{}\n\n\
          `stats.steps_ms`: [name, milliseconds] of each step, in order.\n\n\
          | technique, on the CPU | counts |\n|---|---|\n{}\n\n| technique, on the CPU | steps |\n|---|---|\n{}\n",
+        knobs(),
         channels.join("\n"),
         rows(&|given| list(&given.channels)),
         pairs(COUNTS),

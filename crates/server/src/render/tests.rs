@@ -130,7 +130,11 @@ fn what_a_study_leaves_out_is_its_default() {
 fn a_knob_out_of_its_range_is_found_with_the_study() {
     let (_folder, library) = library(&STUDY.replace("bias_m = 0", "map_size = 1"));
     let said = library.study("studies/s.toml").unwrap_err().to_string();
-    assert!(said.contains("conditions.pcss") && said.contains("map_size = 1: from 16 to 8192"), "{said}");
+    assert!(
+        said.contains("conditions.pcss")
+            && said.contains("map_size = 1: must be a whole number from 16 to 8192"),
+        "{said}"
+    );
 }
 
 /// A picture of another scene is not kept under this one's key.

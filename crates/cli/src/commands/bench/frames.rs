@@ -15,7 +15,7 @@ pub fn run(drawing: &Drawing, count: usize, with_scaling: bool, figures: &Figure
     }
     let mut scene = drawing.load()?;
     let view = drawing.view(&scene.still());
-    let technique = drawing.technique();
+    let technique = drawing.technique()?;
     let cases = [Case::Slid, Case::Posed, Case::LampMoved, Case::NothingSkipped];
     let report =
         bench::frames(&mut scene, &technique, drawing.backend, &view, count, &cases).map_err(render_error)?;

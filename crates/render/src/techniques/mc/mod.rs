@@ -26,7 +26,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use kelir_scene::{Ambient, Theatre};
+use std::ops::Bound;
+
 use serde::{Deserialize, Serialize};
+
+use crate::techniques::knobs::{self, Knob, Range};
 
 use crate::encode::{Srgb, pack};
 use crate::irradiance::UnitImages;
@@ -67,23 +71,37 @@ impl Default for Knobs {
 impl Knobs {
     /// Errors: a knob out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
-        let refuse = |text| Err(RenderError::Knob(text));
-        if !(1..=1 << 20).contains(&self.spp) {
-            return refuse(format!("spp = {}: 1 to 1048576 samples per pixel", self.spp));
-        }
-        if let Some(error) = self.target_error
-            && !(error > 0.0 && error < 1.0)
-        {
-            return refuse(format!("target_error = {error}: above 0 and below 1 (of full scale)"));
-        }
-        if let Some(limit) = self.time_limit_s
-            && !(limit > 0.0 && limit.is_finite())
-        {
-            return refuse(format!("time_limit_s = {limit}: a number of seconds above 0"));
-        }
-        Ok(())
+        knobs::check(KNOBS, self)
     }
 }
+
+/// What can be turned, for files, command line and tables.
+pub const KNOBS: &[Knob] = &[
+    Knob {
+        name: "spp",
+        unit: "samples a pixel",
+        range: Range::Whole(1, 1 << 20),
+        about: "samples a pixel and emitter in penumbra, rounded up to a multiple of 16 replicates",
+    },
+    Knob {
+        name: "seed",
+        unit: "",
+        range: Range::Whole(0, u64::MAX),
+        about: "seed of the sample points: same seed and count, same bytes",
+    },
+    Knob {
+        name: "target_error",
+        unit: "full scale",
+        range: Range::Number(Bound::Excluded(0.0), Bound::Excluded(1.0)),
+        about: "in place of spp: enough samples for this root mean square error over penumbra",
+    },
+    Knob {
+        name: "time_limit_s",
+        unit: "s",
+        range: Range::Number(Bound::Excluded(0.0), Bound::Unbounded),
+        about: "in place of spp: as many samples as this time allows; the count is recorded and replays the image",
+    },
+];
 
 /// The renderer for `knobs` on `backend`.
 pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {

@@ -13,7 +13,11 @@ mod pieces;
 mod renderer;
 mod visibility;
 
+use std::ops::Bound;
+
 use serde::{Deserialize, Serialize};
+
+use crate::techniques::knobs::{self, Knob, Range};
 
 use crate::{RenderError, Renderer};
 
@@ -43,12 +47,25 @@ impl Default for Knobs {
 impl Knobs {
     /// Errors: a knob out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
-        if !(self.tolerance > 0.0 && self.tolerance <= 0.1) {
-            return Err(RenderError::Knob(format!("tolerance = {}: above 0, at most 0.1", self.tolerance)));
-        }
-        Ok(())
+        knobs::check(KNOBS, self)
     }
 }
+
+/// What can be turned, for files, command line and tables.
+pub const KNOBS: &[Knob] = &[
+    Knob {
+        name: "tolerance",
+        unit: "",
+        range: Range::Number(Bound::Excluded(0.0), Bound::Included(0.1)),
+        about: "where nothing is a finite sum, emitter or pixel is subdivided until two levels differ by less than this",
+    },
+    Knob {
+        name: "geometric",
+        unit: "",
+        range: Range::Flag,
+        about: "draws what an emitter gives times its geometric visibility, as pa does, in place of the true irradiance",
+    },
+];
 
 /// The renderer for `knobs`; it has one backend.
 pub fn renderer(knobs: &Knobs) -> Result<Box<dyn Renderer>, RenderError> {

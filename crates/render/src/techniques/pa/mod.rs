@@ -28,6 +28,8 @@ pub mod window;
 
 use serde::{Deserialize, Serialize};
 
+use crate::techniques::knobs::{self, Knob, Range};
+
 use crate::{Backend, RenderError, Renderer};
 
 pub use native::Native;
@@ -72,21 +74,49 @@ impl Default for Knobs {
 impl Knobs {
     /// Errors: a knob out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
-        if !(1..=64).contains(&self.split) {
-            return Err(RenderError::Knob(format!("split = {}: from 1 to 64", self.split)));
-        }
-        if !(1..=1024).contains(&self.strips) {
-            return Err(RenderError::Knob(format!("strips = {}: from 1 to 1024", self.strips)));
-        }
-        if !(16..=8192).contains(&self.map_size) {
-            return Err(RenderError::Knob(format!("map_size = {}: from 16 to 8192", self.map_size)));
-        }
-        if !(2..=128).contains(&self.dome_steps) {
-            return Err(RenderError::Knob(format!("dome_steps = {}: from 2 to 128", self.dome_steps)));
-        }
-        Ok(())
+        knobs::check(KNOBS, self)
     }
 }
+
+/// What can be turned, for files, command line and tables.
+pub const KNOBS: &[Knob] = &[
+    Knob {
+        name: "split",
+        unit: "",
+        range: Range::Whole(1, 64),
+        about: "splits each emitter into K × K pieces, whose products over the puppets are averaged; 1 is the paper's way",
+    },
+    Knob {
+        name: "weights",
+        unit: "",
+        range: Range::Word(&["area", "irradiance"]),
+        about: "how the pieces weigh: area tends to the geometric visibility, irradiance to what a meter reads",
+    },
+    Knob {
+        name: "strips",
+        unit: "",
+        range: Range::Whole(1, 1024),
+        about: "strips that a disk is cut into, each a rectangle of the strip's own area",
+    },
+    Knob {
+        name: "variant",
+        unit: "",
+        range: Range::Word(&["exact", "shadow-map"]),
+        about: "tables of the puppets themselves, or of a shadow map drawn from the lamp, as in the paper",
+    },
+    Knob {
+        name: "map_size",
+        unit: "samples",
+        range: Range::Whole(16, 8192),
+        about: "samples a side of a shadow map: of the lamp's (pa, variant shadow-map) or of each puppet's (pcss)",
+    },
+    Knob {
+        name: "dome_steps",
+        unit: "",
+        range: Range::Whole(2, 128),
+        about: "lattice points per distance of a puppet for the dome's light",
+    },
+];
 
 /// Where tables come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -25,7 +25,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use kelir_scene::{Ambient, EmitterShape, Theatre};
+use std::ops::Bound;
+
 use serde::{Deserialize, Serialize};
+
+use crate::techniques::knobs::{self, Knob, Range};
 
 use crate::encode::{Srgb, pack};
 use crate::irradiance::UnitImages;
@@ -63,23 +67,38 @@ impl Default for Knobs {
 impl Knobs {
     /// Errors: a knob out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
-        let refuse = |text| Err(RenderError::Knob(text));
-        for (name, samples) in
-            [("blocker_samples", self.blocker_samples), ("filter_samples", self.filter_samples)]
-        {
-            if !(1..=16384).contains(&samples) {
-                return refuse(format!("{name} = {samples}: from 1 to 16384"));
-            }
-        }
-        if !(16..=8192).contains(&self.map_size) {
-            return refuse(format!("map_size = {}: from 16 to 8192", self.map_size));
-        }
-        if !(self.bias_m >= 0.0 && self.bias_m.is_finite()) {
-            return refuse(format!("bias_m = {}: a number of metres, 0 or above", self.bias_m));
-        }
-        Ok(())
+        knobs::check(KNOBS, self)
     }
 }
+
+/// What can be turned, for files, command line and tables.
+pub const KNOBS: &[Knob] = &[
+    Knob {
+        name: "blocker_samples",
+        unit: "",
+        range: Range::Whole(1, 16384),
+        about: "samples of the search for blockers",
+    },
+    Knob { name: "filter_samples", unit: "", range: Range::Whole(1, 16384), about: "samples of the filter" },
+    Knob {
+        name: "map_size",
+        unit: "samples",
+        range: Range::Whole(16, 8192),
+        about: "samples a side of a shadow map: of the lamp's (pa, variant shadow-map) or of each puppet's (pcss)",
+    },
+    Knob {
+        name: "seed",
+        unit: "",
+        range: Range::Whole(0, u64::MAX),
+        about: "seed of the sample points: same seed and count, same bytes",
+    },
+    Knob {
+        name: "bias_m",
+        unit: "m",
+        range: Range::Number(Bound::Included(0.0), Bound::Unbounded),
+        about: "depth bias: a puppet no further than this before the screen casts no shadow",
+    },
+];
 
 /// The renderer for `knobs` on `backend`.
 pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {

@@ -6,6 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::techniques::knobs::{self, Knob, Range};
+
 use crate::{Backend, RenderError, Renderer, mc};
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
@@ -31,19 +33,25 @@ impl Default for Knobs {
 impl Knobs {
     /// Errors: a knob out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
-        let side = self.lights.isqrt();
-        if self.lights == 0 || side > 256 || side * side != self.lights {
-            return Err(RenderError::Knob(format!(
-                "lights = {}: a square number from 1 to 65536",
-                self.lights
-            )));
-        }
-        if !(1..=8).contains(&self.subpixels) {
-            return Err(RenderError::Knob(format!("subpixels = {}: 1 to 8 along a side", self.subpixels)));
-        }
-        Ok(())
+        knobs::check(KNOBS, self)
     }
 }
+
+/// What can be turned, for files, command line and tables.
+pub const KNOBS: &[Knob] = &[
+    Knob {
+        name: "lights",
+        unit: "",
+        range: Range::Square(1, 65536),
+        about: "point lights that stand for each emitter",
+    },
+    Knob {
+        name: "subpixels",
+        unit: "",
+        range: Range::Whole(1, 8),
+        about: "points along each side of an area pixel",
+    },
+];
 
 /// The renderer for `knobs` on `backend`.
 pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
