@@ -253,8 +253,8 @@ mod tests {
             "{close}"
         );
         assert_eq!(
-            said("psc", json!({})),
-            "technique = \"psc\": must be one of pa, mc, points, pcss and oracle (did you mean pcss?)"
+            said("pcs", json!({})),
+            "technique = \"pcs\": must be one of pa, mc, points, pcss and oracle (did you mean pcss?)"
         );
         // Every problem at once.
         let both = said("pa", json!({ "split": 1000, "map_size": 1 }));
