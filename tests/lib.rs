@@ -175,34 +175,10 @@ pub fn sql(database: &Path, query: &str) -> Vec<Value> {
     if out.stdout.trim_ascii().is_empty() { Vec::new() } else { serde_json::from_slice(&out.stdout).unwrap() }
 }
 
-/// The rows of a CSV (RFC 4180, no line breaks within cells), each by its columns' names.
+/// The rows of a CSV, each by its columns' names.
 pub fn table(csv: &str) -> Vec<BTreeMap<String, String>> {
-    let mut lines = csv.lines().map(cells);
-    let names = lines.next().expect("a header");
-    lines
-        .map(|cells| {
-            assert_eq!(cells.len(), names.len(), "{cells:?}");
-            names.iter().cloned().zip(cells).collect()
-        })
-        .collect()
-}
-
-fn cells(line: &str) -> Vec<String> {
-    let (mut cells, mut quoted, mut before) = (vec![String::new()], false, ' ');
-    for c in line.chars() {
-        match c {
-            // A quote within a quoted cell is written twice.
-            '"' if before == '"' && !quoted => {
-                quoted = true;
-                cells.last_mut().unwrap().push(c);
-            }
-            '"' => quoted = !quoted,
-            ',' if !quoted => cells.push(String::new()),
-            c => cells.last_mut().unwrap().push(c),
-        }
-        before = c;
-    }
-    cells
+    let rows = csv::Reader::from_reader(csv.as_bytes()).into_deserialize();
+    rows.collect::<Result<_, _>>().expect("rows as long as their header")
 }
 
 /// Runs a script of tests/browser with one JSON argument and answers the JSON of its last line.

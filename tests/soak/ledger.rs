@@ -82,7 +82,7 @@ impl Stored {
                 trial: row["trial_index"].as_u64().unwrap_or_default() as u32,
                 row: text(row, "row"),
                 row_hash: text(row, "row_hash"),
-                nonce: unhex(&text(row, "nonce")),
+                nonce: hex::decode(text(row, "nonce")).unwrap_or_default(),
                 answer: text(row, "answer"),
                 payload: text(row, "payload"),
             }));
@@ -185,12 +185,7 @@ pub fn rows(database: &Path, query: &str) -> Result<Vec<Value>, String> {
 
 fn sha256(parts: &[&[u8]]) -> String {
     let hasher = parts.iter().fold(Sha256::new(), |hasher, part| hasher.chain_update(part));
-    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn unhex(text: &str) -> Vec<u8> {
-    let pairs = text.as_bytes().chunks(2).filter_map(|pair| std::str::from_utf8(pair).ok());
-    pairs.filter_map(|pair| u8::from_str_radix(pair, 16).ok()).collect()
+    hex::encode(hasher.finalize())
 }
 
 #[cfg(test)]

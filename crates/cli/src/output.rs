@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
-use kelir_report::csv_cell;
+use kelir_report::{Terminator, csv_table};
 use serde::Serialize;
 
 /// How results are printed.
@@ -106,11 +106,7 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
 
 /// A header and rows as CSV.
 pub fn csv(header: &[&str], rows: &[Vec<String>]) -> String {
-    let head: Vec<String> = header.iter().map(|title| (*title).to_owned()).collect();
-    let lines = std::iter::once(&head)
-        .chain(rows)
-        .map(|row| row.iter().map(|cell| csv_cell(cell)).collect::<Vec<_>>().join(","));
-    lines.collect::<Vec<_>>().join("\n")
+    csv_table(Terminator::Any(b'\n'), header, rows)
 }
 
 #[cfg(test)]
@@ -125,6 +121,6 @@ mod tests {
 
     #[test]
     fn csv_quotes_what_needs_it() {
-        assert_eq!(csv(&["a"], &[vec!["x,\"y\"".to_owned()]]), "a\n\"x,\"\"y\"\"\"");
+        assert_eq!(csv(&["a"], &[vec!["x,\"y\"".to_owned()]]), "a\n\"x,\"\"y\"\"\"\n");
     }
 }

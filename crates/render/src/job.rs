@@ -131,7 +131,7 @@ pub struct Blob {
 
 impl Blob {
     fn new(media_type: &str, bytes: Vec<u8>) -> Self {
-        let sha256 = hex(&Sha256::digest(&bytes));
+        let sha256 = hex::encode(Sha256::digest(&bytes));
         Self { media_type: media_type.into(), bytes, sha256 }
     }
 }
@@ -200,10 +200,6 @@ struct Manifest<'a> {
     width: usize,
     height: usize,
     frames: &'a [String],
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 /// Draws the job. `progress` is called before each step and once at the end.

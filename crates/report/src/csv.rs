@@ -1,22 +1,23 @@
 //! One row a number, for a spreadsheet or R.
 
 use crate::{Sample, StudyReport, numbers};
+use ::csv::{Terminator, WriterBuilder};
 
 /// Columns of [`csv`].
-const HEADER: &str = "sample,block,analysis,statistic,value,low,high,level,p,n,note";
+const HEADER: [&str; 11] =
+    ["sample", "block", "analysis", "statistic", "value", "low", "high", "level", "p", "n", "note"];
 
-/// Every number in full precision, one a row, with a header line; RFC 4180 with `\n` between lines.
+/// Every number in full precision, one a row, with a header line; RFC 4180 with `\n` after each line.
 ///
 /// `sample` is `screened`, or `everybody` for the same with the excluded; `block` is empty for what is of the whole study.
 pub fn csv(report: &StudyReport) -> String {
-    let mut out = HEADER.to_owned();
-    for number in numbers(report) {
+    let rows = numbers(report).into_iter().map(|number| {
         let exact = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
         let sample = match number.sample {
             Sample::Screened => "screened",
             Sample::Everybody => "everybody",
         };
-        let cells = [
+        [
             sample.to_owned(),
             number.block,
             number.analysis.to_owned(),
@@ -28,11 +29,9 @@ pub fn csv(report: &StudyReport) -> String {
             exact(number.p),
             number.n.map_or_else(String::new, |n| n.to_string()),
             number.note,
-        ];
-        out.push('\n');
-        out.push_str(&cells.map(|cell| csv_cell(&cell)).join(","));
-    }
-    out
+        ]
+    });
+    csv_table(Terminator::Any(b'\n'), HEADER, rows)
 }
 
 /// What a spreadsheet takes for the beginning of a formula; those in full width (＝＋－＠) are read like the plain ones in East Asian settings.
@@ -42,9 +41,23 @@ const FORMULAS: [char; 11] =
 /// What parts cells besides a comma: a spreadsheet whose decimals have one reads tables so, quotes or not.
 const PARTS: [char; 2] = [';', '\t'];
 
-/// A cell of any table that kelir writes: text that a spreadsheet would take for a formula gets an apostrophe before it, behind a semicolon or
-/// tab too; quoted where needed (RFC 4180).
-pub fn csv_cell(cell: &str) -> String {
+/// Any table that kelir writes as CSV: cells quoted where needed (RFC 4180), `end` after each line, and no formula for a spreadsheet.
+pub fn csv_table(
+    end: Terminator,
+    header: impl IntoIterator<Item: AsRef<str>>,
+    rows: impl IntoIterator<Item: IntoIterator<Item: AsRef<str>>>,
+) -> String {
+    const IN_MEMORY: &str = "memory takes every row";
+    let mut out = WriterBuilder::new().flexible(true).terminator(end).from_writer(Vec::new());
+    out.write_record(header.into_iter().map(|cell| no_formula(cell.as_ref()))).expect(IN_MEMORY);
+    for row in rows {
+        out.write_record(row.into_iter().map(|cell| no_formula(cell.as_ref()))).expect(IN_MEMORY);
+    }
+    String::from_utf8(out.into_inner().expect(IN_MEMORY)).expect("cells are text")
+}
+
+/// A cell whose text a spreadsheet would take for a formula gets an apostrophe before it, behind a semicolon or tab too.
+fn no_formula(cell: &str) -> String {
     let is_number = cell.parse().is_ok_and(f64::is_finite) && cell.starts_with('-');
     let mut shown = String::with_capacity(cell.len());
     for (at, part) in cell.split_inclusive(PARTS).enumerate() {
@@ -53,13 +66,17 @@ pub fn csv_cell(cell: &str) -> String {
         }
         shown.push_str(part);
     }
-    let cell = shown;
-    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell }
+    shown
 }
 
 #[cfg(test)]
 mod tests {
-    use super::csv_cell as quoted;
+    use super::*;
+
+    fn quoted(cell: &str) -> String {
+        let table = csv_table(Terminator::Any(b'\n'), ["a"], [[cell]]);
+        table.strip_prefix("a\n").and_then(|rest| rest.strip_suffix('\n')).expect("two lines").to_owned()
+    }
 
     #[test]
     fn cells_are_quoted_and_no_formula_gets_through() {

@@ -18,7 +18,8 @@ mod sources;
 mod standing;
 mod text;
 
-pub use csv::{csv, csv_cell};
+pub use self::csv::{csv, csv_table};
+pub use ::csv::Terminator;
 pub use display::ShownAt;
 pub use document::{Cell, Column, Document, Figure, Piece, Row, Section, Table};
 pub use html::{escaped, html};

@@ -362,5 +362,5 @@ fn hash(canonical: &str, files: BTreeMap<String, Rc<[u8]>>) -> String {
         piece(path.as_bytes());
         piece(bytes);
     }
-    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hex::encode(sha.finalize())
 }

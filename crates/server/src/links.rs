@@ -69,7 +69,7 @@ impl Links {
             (EXPIRES.to_owned(), expires.to_string()),
             (KEY_ID.to_owned(), self.id()),
         ];
-        let signature = hex(&self.mac(&path, &pairs).finalize().into_bytes());
+        let signature = hex::encode(self.mac(&path, &pairs).finalize().into_bytes());
         let query: Vec<String> = pairs.iter().map(|(name, value)| format!("{name}={value}")).collect();
         format!("{path}?{}&{SIGNATURE}={signature}", query.join("&"))
     }
@@ -104,7 +104,8 @@ impl Links {
         }
         let signed: Vec<_> = pairs.iter().filter(|(name, _)| name != SIGNATURE).cloned().collect();
         // Compared in constant time.
-        if self.mac(&path(study), &signed).verify_slice(&unhex(signature)).is_err() {
+        if self.mac(&path(study), &signed).verify_slice(&hex::decode(signature).unwrap_or_default()).is_err()
+        {
             return Err("This link has been changed. Please ask for a new one.");
         }
         match get(EXPIRES).and_then(|text| text.parse::<u64>().ok()) {
@@ -143,16 +144,6 @@ pub fn now() -> u64 {
 
 fn path(study: &str) -> String {
     format!("/study/{study}")
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// The bytes that hexadecimal digits stand for; none for anything else.
-fn unhex(text: &str) -> Vec<u8> {
-    let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok();
-    text.as_bytes().chunks(2).map(byte).collect::<Option<_>>().unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -96,10 +96,10 @@ impl Presenter {
             let mut hash = self.begun(store, &stimulus, length).await?;
             let tail = secret(whose, "tail", &stimulus, length)?;
             hash.update(tail);
-            let address = hex(&secret(whose, "address", &stimulus, length)?[..16]);
+            let address = hex::encode(&secret(whose, "address", &stimulus, length)?[..16]);
             let url = address_of(whose.session_id, &address);
             self.remember(url.clone(), Presented { stimulus, length, tail });
-            told.insert(*role, StimulusRef { sha256: hex(&hash.finalize()), url });
+            told.insert(*role, StimulusRef { sha256: hex::encode(hash.finalize()), url });
         }
         Ok(told)
     }
@@ -223,8 +223,4 @@ fn secret(whose: Whose<'_>, what: &str, stimulus: &str, length: u64) -> Result<[
     let mac = Hmac::<Sha256>::new_from_slice(whose.token_hash.as_bytes()).map_err(Problem::internal)?;
     let mac = mac.chain_update(format!("kelir-stimulus/1\n{what}\n{stimulus}\n{length}"));
     Ok(mac.finalize().into_bytes().into())
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -2,10 +2,10 @@
 
 use crate::api::StudyVersion;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
-use crate::table::write_row;
 use crate::weight::{Download, downloads};
 use kelir_report::{
     Chain, DifferentStimulus, Fault, Participants, PooledVersion, ShownAt, Standing, Stimulus, StudyReport,
+    Terminator, csv_table,
 };
 use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
@@ -240,11 +240,10 @@ pub async fn pairs_csv(store: &Store, selection: &Selection) -> Result<String, S
     let sessions = store.sessions(&study.id, &selection.versions).await?;
     let observers: HashMap<&str, &str> =
         sessions.iter().map(|s| (s.session_id.as_str(), s.subject_id.as_str())).collect();
-    let mut out = String::new();
     let header =
         ["observer", "session", "scene", "condition_A", "condition_B", "is_A_selected", "left_condition"];
-    write_row(&mut out, header.map(str::to_owned));
-    for participant in judged.judged {
+    let mut rows = Vec::new();
+    for participant in &judged.judged {
         let session = &*participant.session_id;
         let observer = observers.get(session).copied().unwrap_or_default();
         for (block, items) in blocks(study).filter(|(block, _)| compares(block)) {
@@ -254,11 +253,11 @@ pub async fn pairs_csv(store: &Store, selection: &Selection) -> Result<String, S
                 let chose = |target: bool| if target { block.target.as_str() } else { block.other() };
                 let selected = if chose(given.chose_target) == a { "1" } else { "0" };
                 let first = chose(given.chose_target == given.chose_first);
-                write_row(&mut out, [observer, session, &item.id, a, b, selected, first].map(str::to_owned));
+                rows.push([observer, session, &item.id, a, b, selected, first]);
             }
         }
     }
-    Ok(out)
+    Ok(csv_table(Terminator::CRLF, header, rows))
 }
 
 /// Who is left out by the study's rules, and why.

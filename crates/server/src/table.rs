@@ -1,6 +1,6 @@
 //! Tables of a study's data: columns that say what they are, and cells as text. CSV and spreadsheets are written from them.
 
-use kelir_report::csv_cell;
+use kelir_report::{Terminator, csv_table};
 use kelir_study::schema::Column;
 
 /// A table with what its columns are.
@@ -17,10 +17,7 @@ pub struct Table {
 impl Table {
     /// The table as CSV (RFC 4180), its header first.
     pub fn csv(&self) -> String {
-        let mut out = String::new();
-        write_row(&mut out, self.columns.iter().map(|column| column.name.clone()));
-        self.rows.iter().for_each(|row| write_row(&mut out, row.iter().cloned()));
-        out
+        csv_table(Terminator::CRLF, self.columns.iter().map(|column| &column.name), &self.rows)
     }
 }
 
@@ -52,24 +49,22 @@ pub fn codebook_of(columns: &[Column]) -> Table {
     }
 }
 
-/// A row of cells, CRLF at the end.
-pub(crate) fn write_row(out: &mut String, cells: impl IntoIterator<Item = String>) {
-    let cells: Vec<String> = cells.into_iter().map(|cell| csv_cell(&cell)).collect();
-    out.push_str(&cells.join(","));
-    out.push_str("\r\n");
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn cells_are_quoted_and_no_formula_survives() {
-        let mut out = String::new();
-        write_row(&mut out, ["a", "b,c", "d\"e", "=1+1", "-3.5", "-cmd"].map(str::to_owned));
-        assert_eq!(out, "a,\"b,c\",\"d\"\"e\",'=1+1,-3.5,'-cmd\r\n");
-        out.clear();
-        write_row(&mut out, ["＝1+1", "＠SUM(A1)"].map(str::to_owned));
-        assert_eq!(out, "'＝1+1,'＠SUM(A1)\r\n");
+    fn cells_are_quoted_lines_end_with_crlf_and_no_formula_survives() {
+        let column = Column {
+            name: "=1+1".to_owned(),
+            kind: "text".to_owned(),
+            unit: String::new(),
+            meaning: "a, \"b\"".to_owned(),
+            values: Vec::new(),
+        };
+        assert_eq!(
+            codebook_of(&[column]).csv(),
+            "column,type,unit,meaning,values\r\n'=1+1,text,,\"a, \"\"b\"\"\",\r\n"
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::clock;
 use crate::error::StoreError;
-use crate::files::{hex, sha256_hex};
+use crate::files::sha256_hex;
 use crate::first_chain::{self, GENESIS};
 use crate::plans::{PlannedTrial, decided, insert_trials, next_trial, plan_of, trial};
 use crate::sessions::{Session, session};
@@ -405,7 +405,7 @@ pub(crate) fn genesis(connection: &Connection) -> Result<String, StoreError> {
 pub(crate) fn answer_hash(nonce: &[u8], answer: &[u8], payload: &[u8]) -> String {
     let parts = [nonce, answer, b"\n", payload];
     let hasher = parts.into_iter().fold(Sha256::new(), |hasher, part| hasher.chain_update(part));
-    hex(&hasher.finalize())
+    hex::encode(hasher.finalize())
 }
 
 pub(crate) fn read_answer(row: &SqliteRow) -> Result<AnswerRow, StoreError> {

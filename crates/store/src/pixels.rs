@@ -1,6 +1,5 @@
 //! What a stimulus shows, whatever its file is like: a hash over decoded pixels, so that a file may be packed anew without a new version.
 
-use crate::files::hex;
 use crate::stimuli::ANIMATION;
 use image::{DynamicImage, ImageDecoder, ImageReader, RgbaImage};
 use serde::Deserialize;
@@ -126,7 +125,7 @@ impl PixelsHash {
     }
 
     pub(crate) fn finish(self) -> Pixels {
-        let sha256 = hex(&self.hasher.finalize());
+        let sha256 = hex::encode(self.hasher.finalize());
         Pixels { size: self.size, sha256 }
     }
 }

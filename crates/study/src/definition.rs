@@ -390,7 +390,3 @@ fn percent_encode(value: &str, out: &mut String) {
         }
     }
 }
-
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
-}

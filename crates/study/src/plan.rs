@@ -5,7 +5,7 @@
 //! exactly whenever both are completed. A newcomer takes the lowest slot that no completed or active session holds.
 
 use crate::adaptive::Running;
-use crate::definition::{Block, Kind, StudyDefinition, hex};
+use crate::definition::{Block, Kind, StudyDefinition};
 use crate::trials::{Shown, TrialKind, owned};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -75,7 +75,7 @@ impl TrialPlan {
     /// over the session (likewise).
     pub fn for_slot(study: &StudyDefinition, slot: u32) -> TrialPlan {
         let Decision { trials, more } = next_trials(study, slot, &[], &|_| None);
-        TrialPlan { slot, seed: hex(&seed(study, slot)), trials, more }
+        TrialPlan { slot, seed: hex::encode(seed(study, slot)), trials, more }
     }
 }
 

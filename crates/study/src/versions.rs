@@ -2,7 +2,7 @@
 //!
 //! Everything is hashed as RFC 8785 canonical JSON (JCS): keys sorted, numbers as ECMAScript writes them, −0 as 0.
 
-use crate::definition::{StudyDefinition, hex};
+use crate::definition::StudyDefinition;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -79,5 +79,5 @@ fn without_texts(read: &mut Map<String, Value>) {
 
 fn digest(value: Value) -> String {
     let text = kelir_jcs::canonical(value).expect("a JSON value holds only finite numbers and string keys");
-    hex(&Sha256::digest(text))
+    hex::encode(Sha256::digest(text))
 }

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use super::{Job, hex};
+use super::Job;
 use crate::{Backend, RenderError, Technique, renderer};
 use kelir_jcs::{canonical, exact};
 
@@ -21,7 +21,7 @@ const NOW: Revisions = Revisions { shared: crate::REVISION, of: Technique::revis
 impl Job {
     /// SHA-256 of the preimage, hexadecimal: what is drawn once for it need not be drawn again. Errors: as [`Job::preimage_for`].
     pub fn key(&self) -> Result<String, RenderError> {
-        Ok(hex(&Sha256::digest(self.preimage_for(self.scene.sha256())?)))
+        Ok(hex::encode(Sha256::digest(self.preimage_for(self.scene.sha256())?)))
     }
 }
 

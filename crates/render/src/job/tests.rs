@@ -87,7 +87,7 @@ fn the_same_job_gives_the_same_bytes_and_says_where_they_came_from() {
     let two = run(&mut job("", pa(), Output::Still), &mut |_| ()).unwrap();
     assert_eq!((one.media_type.as_str(), &one.bytes[1..4]), ("image/png", &b"PNG"[..]));
     assert_eq!((&one.bytes, &one.sha256), (&two.bytes, &two.sha256));
-    assert_eq!(one.sha256, hex(&Sha256::digest(&one.bytes)));
+    assert_eq!(one.sha256, hex::encode(Sha256::digest(&one.bytes)));
     assert_eq!(steps.last(), Some(&(3, 3)));
     assert!(steps.windows(2).all(|w| w[0].0 < w[1].0));
     let json = serde_json::to_value(&one.provenance).unwrap();

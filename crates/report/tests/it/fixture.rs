@@ -241,15 +241,8 @@ pub fn svg_disks(svg: &str) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// The cells of a line of CSV.
-pub fn cells(line: &str) -> Vec<String> {
-    let (mut cells, mut quoted) = (vec![String::new()], false);
-    for c in line.chars() {
-        match c {
-            '"' => quoted = !quoted,
-            ',' if !quoted => cells.push(String::new()),
-            c => cells.last_mut().unwrap().push(c),
-        }
-    }
-    cells
+/// The cells of a CSV, without its header's.
+pub fn cells(csv: &str) -> Vec<String> {
+    let rows = csv::Reader::from_reader(csv.as_bytes()).into_records().map(Result::unwrap);
+    rows.flat_map(|row| row.iter().map(str::to_owned).collect::<Vec<_>>()).collect()
 }

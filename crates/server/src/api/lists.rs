@@ -50,7 +50,7 @@ impl ListQuery {
 
 /// A cursor names the last item seen, so that items that come and go elsewhere move nothing.
 fn cursor_of(key: &str) -> String {
-    key.bytes().map(|byte| format!("{byte:02x}")).collect()
+    hex::encode(key)
 }
 
 #[cfg(test)]

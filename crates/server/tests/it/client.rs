@@ -6,6 +6,7 @@ use axum::body::{Body, to_bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
 use kelir_server::{Maker, Server, ServerConfig, TrustedProxies};
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
@@ -203,6 +204,13 @@ impl Client {
     pub async fn research(&self, cookie: &str, path: &str) -> Answer {
         let request = Request::get(path).header(header::COOKIE, cookie).body(Body::empty()).unwrap();
         self.send(request).await
+    }
+
+    /// The rows of a table of the small study's current version, each by the names of its columns.
+    pub async fn rows(&self, cookie: &str, table: &str) -> Vec<HashMap<String, String>> {
+        let path = format!("/api/v1/studies/shadow-puppets/versions/current/{table}");
+        let text = self.research(cookie, &path).await.text();
+        csv::Reader::from_reader(text.as_bytes()).deserialize().map(Result::unwrap).collect()
     }
 
     /// Begins a session and consents; answers its address, token and state.

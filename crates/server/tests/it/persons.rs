@@ -31,15 +31,6 @@ async fn results(client: &Client, query: &str) -> Value {
     client.research(&cookie, &format!("{VERSION}/results{query}")).await.json()
 }
 
-/// The rows of a table, each by the names of its columns; no cell of these has a comma or a quote.
-async fn rows(client: &Client, table: &str) -> Vec<std::collections::HashMap<String, String>> {
-    let cookie = client.sign_in().await;
-    let text = client.research(&cookie, &format!("{VERSION}/{table}")).await.text();
-    let mut lines = text.trim_end().split("\r\n").map(|line| line.split(',').map(str::to_owned));
-    let header: Vec<String> = lines.next().unwrap().collect();
-    lines.map(|cells| header.iter().cloned().zip(cells).collect()).collect()
-}
-
 #[tokio::test(flavor = "multi_thread")]
 async fn who_comes_twice_is_one_person_and_everything_says_so() {
     let client = Client::ready().await;
@@ -59,13 +50,13 @@ async fn who_comes_twice_is_one_person_and_everything_says_so() {
     assert_eq!(standing["flagged"][0]["flag"], "repeated_id");
     assert_eq!(standing["flagged"][0]["sessions"], 2);
 
-    let people = rows(&client, "participants.csv").await;
+    let cookie = client.sign_in().await;
+    let people = client.rows(&cookie, "participants.csv").await;
     let judged: Vec<&str> = people.iter().map(|row| row["judged"].as_str()).collect();
     assert_eq!(judged, ["1", "0", "0", "1"]);
     let first = &people[0]["session_id"];
     assert_eq!(people[1]["reject_reason"], format!("had taken part before: session {first} counts"));
     assert!(people[1]["flags"].contains("repeated_id") && !people[0]["flags"].contains("repeated_id"));
-    let cookie = client.sign_in().await;
     let report = client.research(&cookie, &format!("{VERSION}/report.md")).await.text();
     assert!(report.contains(said), "{report}");
     let pairs = client.research(&cookie, &format!("{VERSION}/pairs.csv")).await.text();
@@ -239,7 +230,8 @@ async fn participants_are_a_table_with_all_that_is_known_and_allowed() {
     let code = client.call("POST", &format!("{path}/completion"), token, &Value::Null).await.json();
     begin(&client, "late").await;
 
-    let people = rows(&client, "participants.csv").await;
+    let cookie = client.sign_in().await;
+    let people = client.rows(&cookie, "participants.csv").await;
     let row = |at: usize, names: &[&str]| -> Vec<String> {
         names.iter().map(|name| people[at][*name].clone()).collect()
     };
@@ -261,7 +253,6 @@ async fn participants_are_a_table_with_all_that_is_known_and_allowed() {
         row(1, &["status", "judged", "reject_reason", "completion_code"]),
         ["in progress", "0", "no answers", ""]
     );
-    let cookie = client.sign_in().await;
     let text = client.research(&cookie, &format!("{VERSION}/participants.csv")).await.text();
     assert!(!text.contains("s3cr3t"), "a parameter that the study does not list stays inside");
     let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();

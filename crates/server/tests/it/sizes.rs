@@ -102,23 +102,10 @@ async fn a_page_is_told_of_each_size_and_nothing_tells_the_conditions_apart_in_a
     assert_eq!(state["trials"][0]["larger"], json!([]));
 }
 
-/// The cells of a column of the table of responses, in the order of the trials; none of the cells looked at holds a comma.
+/// The cells of a column of the table of responses, in the order of the trials.
 async fn column(client: &Client, cookie: &str, name: &str) -> Vec<String> {
-    let path = "/api/v1/studies/shadow-puppets/versions/current/responses.csv";
-    let text = client.research(cookie, path).await.text();
-    let cells = |line: &str| {
-        let (mut cells, mut quoted) = (vec![String::new()], false);
-        for c in line.chars() {
-            match c {
-                '"' => quoted = !quoted,
-                ',' if !quoted => cells.push(String::new()),
-                c => cells.last_mut().unwrap().push(c),
-            }
-        }
-        cells
-    };
-    let at = cells(text.lines().next().unwrap()).iter().position(|column| column == name).unwrap();
-    text.lines().skip(1).map(|line| cells(line).remove(at)).collect()
+    let rows = client.rows(cookie, "responses.csv").await;
+    rows.iter().map(|row| row[name].clone()).collect()
 }
 
 #[tokio::test(flavor = "multi_thread")]

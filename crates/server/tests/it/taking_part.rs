@@ -94,29 +94,17 @@ async fn whatever_a_browser_or_its_clock_makes_of_an_answer_is_stored_and_the_co
     assert!(done.json()["completion_code"].is_string(), "{}", done.text());
 
     let cookie = client.sign_in().await;
-    let at = |table| format!("/api/v1/studies/shadow-puppets/versions/current/{table}");
-    let csv = client.research(&cookie, &at("responses.csv")).await.text();
-    // Commas between an even number of quotation marks part cells.
-    let cells_of = |line: &str| {
-        let mut quoted = false;
-        let part = |c: char| {
-            quoted ^= c == '"';
-            c == ',' && !quoted
-        };
-        line.split(part).map(str::to_owned).collect::<Vec<_>>()
-    };
-    let mut rows = csv.lines().map(cells_of);
-    let names = rows.next().unwrap();
-    let column = |name: &str| names.iter().position(|n| n == name).unwrap();
-    let cells: Vec<_> = rows.map(|row| [row[column("flags")].clone(), row[column("rt")].clone()]).collect();
+    let rows = client.rows(&cookie, "responses.csv").await;
+    assert_eq!(rows.len(), odd.len());
     let flags =
         ["rt", "frames input onset rt timestamp viewport", "plugin_version reload_count rt scale refresh_hz"];
-    for (cells, flags) in cells.iter().zip(flags) {
+    for (row, flags) in rows.iter().zip(flags) {
         let sorted =
             |text: &str| text.split(' ').map(str::to_owned).collect::<std::collections::BTreeSet<_>>();
-        assert_eq!((sorted(&cells[0]), cells[1].as_str()), (sorted(flags), ""));
+        assert_eq!((sorted(&row["flags"]), row["rt"].as_str()), (sorted(flags), ""));
     }
-    let results = client.research(&cookie, &at("results")).await;
+    let results = "/api/v1/studies/shadow-puppets/versions/current/results";
+    let results = client.research(&cookie, results).await;
     assert_eq!(results.status, StatusCode::OK, "{}", results.text());
 }
 

@@ -51,7 +51,7 @@ fn the_preimage_is_the_contracts() {
     );
     // sha256sum of that text.
     assert_eq!(
-        hex(&Sha256::digest(preimage)),
+        hex::encode(Sha256::digest(preimage)),
         "5879043a1f65514c712bc19b347714f5fcc58f03111cc20cac43aec615bdeaf4"
     );
 }
