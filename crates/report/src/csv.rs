@@ -3,7 +3,7 @@
 use crate::{Sample, StudyReport, numbers};
 use ::csv::{Terminator, WriterBuilder};
 
-/// Columns of [`csv`].
+/// Columns of [`csv`](fn@csv).
 const HEADER: [&str; 11] =
     ["sample", "block", "analysis", "statistic", "value", "low", "high", "level", "p", "n", "note"];
 
