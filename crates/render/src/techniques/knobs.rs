@@ -88,7 +88,9 @@ pub(crate) fn check(knobs: &[Knob], stand: &impl Serialize) -> Result<(), Render
     let stand = serde_json::to_value(stand).unwrap_or_default();
     told(stand.as_object().into_iter().flatten().filter_map(|(name, value)| {
         let knob = knobs.iter().find(|knob| knob.name == name)?;
-        wrong(knob, value)
+        // JSON has null for a number that is not finite.
+        let not_finite = || format!("{name} is not a finite number: must be {}", knob.range);
+        if value.is_null() { Some(not_finite()) } else { wrong(knob, value) }
     }))
 }
 

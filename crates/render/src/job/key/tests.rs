@@ -228,7 +228,7 @@ fn what_cannot_be_drawn_has_no_key() {
                 reference: mc(mc::Knobs { target_error: Some(f64::NAN), ..mc::Knobs::default() }),
                 ..job()
             },
-            "target_error = NaN",
+            "target_error is not a finite number",
         ),
         (
             Job { technique: Technique::Pa(pa::Knobs { split: 0, ..pa::Knobs::default() }), ..job() },
