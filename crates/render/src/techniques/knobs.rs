@@ -24,6 +24,22 @@ pub struct Knob {
     pub about: &'static str,
 }
 
+/// Of techniques with shadow maps.
+pub(crate) const MAP_SIZE: Knob = Knob {
+    name: "map_size",
+    unit: "samples",
+    range: Range::Whole(16, 8192),
+    about: "samples a side of a shadow map: of the lamp's (pa, variant shadow-map) or of each puppet's (pcss)",
+};
+
+/// Of techniques that sample.
+pub(crate) const SEED: Knob = Knob {
+    name: "seed",
+    unit: "",
+    range: Range::Whole(0, u64::MAX),
+    about: "seed of the sample points: same seed and count, same bytes",
+};
+
 /// What a knob may be; displayed as the words after "must be".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {

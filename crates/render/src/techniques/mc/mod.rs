@@ -83,12 +83,7 @@ pub const KNOBS: &[Knob] = &[
         range: Range::Whole(1, 1 << 20),
         about: "samples a pixel and emitter in penumbra, rounded up to a multiple of 16 replicates",
     },
-    Knob {
-        name: "seed",
-        unit: "",
-        range: Range::Whole(0, u64::MAX),
-        about: "seed of the sample points: same seed and count, same bytes",
-    },
+    knobs::SEED,
     Knob {
         name: "target_error",
         unit: "full scale",

@@ -104,12 +104,7 @@ pub const KNOBS: &[Knob] = &[
         range: Range::Word(&["exact", "shadow-map"]),
         about: "tables of the puppets themselves, or of a shadow map drawn from the lamp, as in the paper",
     },
-    Knob {
-        name: "map_size",
-        unit: "samples",
-        range: Range::Whole(16, 8192),
-        about: "samples a side of a shadow map: of the lamp's (pa, variant shadow-map) or of each puppet's (pcss)",
-    },
+    knobs::MAP_SIZE,
     Knob {
         name: "dome_steps",
         unit: "",

@@ -80,18 +80,8 @@ pub const KNOBS: &[Knob] = &[
         about: "samples of the search for blockers",
     },
     Knob { name: "filter_samples", unit: "", range: Range::Whole(1, 16384), about: "samples of the filter" },
-    Knob {
-        name: "map_size",
-        unit: "samples",
-        range: Range::Whole(16, 8192),
-        about: "samples a side of a shadow map: of the lamp's (pa, variant shadow-map) or of each puppet's (pcss)",
-    },
-    Knob {
-        name: "seed",
-        unit: "",
-        range: Range::Whole(0, u64::MAX),
-        about: "seed of the sample points: same seed and count, same bytes",
-    },
+    knobs::MAP_SIZE,
+    knobs::SEED,
     Knob {
         name: "bias_m",
         unit: "m",
