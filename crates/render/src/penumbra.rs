@@ -154,7 +154,7 @@ mod tests {
         let frame = pa::Native::new(pa::Knobs::default()).radiance(&theatre, &view).unwrap();
         let marked = super::mask(&theatre, &view);
         let mut seen = [0; 2];
-        for (v, marked) in frame.layers[0].values.iter().zip(&marked) {
+        for (v, marked) in frame.visibilities[0].values.iter().zip(&marked) {
             assert_eq!(*v > 0.0 && *v < 1.0, *marked, "visibility {v}");
             seen[usize::from(*marked)] += 1;
         }

@@ -19,7 +19,7 @@ use kelir_scene::Scene;
 use kelir_vision::errors::{Errors, errors};
 
 pub use cases::{Case, SEED, all};
-pub use crops::{Crop, Model};
+pub use crops::Crop;
 pub use report::{CaseReport, Measured, OnCrops, Oracle, Outcome, Reference, Report, Times};
 
 use crate::exposure::Rule;
@@ -69,8 +69,7 @@ impl Options {
         if self.reference_seed == SEED {
             return refuse(format!("reference_seed = {SEED}: the images under test have this one"));
         }
-        let spp = |case: &Case| if let Technique::Mc(knobs) = &case.technique { knobs.spp } else { 0 };
-        let most = cases.iter().map(spp).max().unwrap_or(0);
+        let most = cases.iter().map(|case| case.technique.truth_samples()).max().unwrap_or(0);
         if self.reference_spp <= most {
             let spp = self.reference_spp;
             return refuse(format!("reference_spp = {spp}: more than the {most} of an image under test"));

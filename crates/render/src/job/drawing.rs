@@ -3,7 +3,7 @@
 use kelir_scene::Theatre;
 
 use super::{Blob, Job, Output};
-use crate::{Frame, Meter, RenderError, Renderer, Stats, Technique, encode, renderer};
+use crate::{Frame, Meter, RenderError, Renderer, Stats, encode, renderer};
 
 /// A job being drawn, frame by frame; it keeps what it built between frames.
 pub struct Drawing<'j> {
@@ -22,7 +22,7 @@ pub struct Drawn {
     pub repeated: bool,
     /// What was done and skipped.
     pub stats: Stats,
-    /// The image in linear light that the codes were made from: for Monte Carlo and for what a camera takes.
+    /// The image in linear light that the codes were made from: for the ground truth and for what a camera takes.
     pub linear: Option<Frame>,
 }
 
@@ -80,8 +80,8 @@ impl<'j> Drawing<'j> {
         }
         self.last = None;
         let (view, camera) = (self.job.view, self.job.camera);
-        // Display codes alone would not say how sure Monte Carlo is of them.
-        let drawn = if camera.is_some() || matches!(self.job.technique, Technique::Mc(_)) {
+        // Display codes alone would not say how sure the ground truth is of them.
+        let drawn = if camera.is_some() || self.job.technique.is_truth() {
             let mut frame = self.renderer.radiance(&theatre, &view)?;
             self.codes = match camera {
                 Some(camera) => camera.expose(&frame, self.white)?,

@@ -27,7 +27,7 @@ pub struct Measured {
     pub floor: Option<f64>,
 }
 
-/// Monte Carlo's own standard error of the irradiance, in units of the brightest unshadowed point.
+/// The ground truth's own standard error of the irradiance, in units of the brightest unshadowed point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StandardError {
     /// Root mean square over the sampled pixels and channels of all frames; elsewhere it is exactly 0.
@@ -36,13 +36,13 @@ pub struct StandardError {
     pub max: f64,
 }
 
-/// Sums of the standard errors in a frame's SE layers.
+/// Sums of the standard errors in frames.
 #[derive(Default)]
 pub(crate) struct Spread {
     squares: f64,
     count: usize,
     max: f64,
-    /// Whether there were SE layers at all.
+    /// Whether any frame had them.
     known: bool,
 }
 
@@ -54,10 +54,9 @@ impl Spread {
         albedo: &albedo::PixelAlbedo,
         counted: impl Fn(usize, f64) -> bool,
     ) {
-        for (c, name) in ["SE.R", "SE.G", "SE.B"].iter().enumerate() {
-            let Some(layer) = frame.layers.iter().find(|l| l.name == *name) else { continue };
+        for (c, errors) in frame.standard_error.iter().flatten().enumerate() {
             self.known = true;
-            for (k, se) in layer.values.iter().enumerate() {
+            for (k, se) in errors.iter().enumerate() {
                 let se = f64::from(*se) * PI / f64::from(albedo.at(c, k));
                 if se.is_finite() && counted(k, se) {
                     self.squares += se * se;

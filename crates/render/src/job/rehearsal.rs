@@ -3,7 +3,7 @@
 use kelir_scene::Scene;
 
 use super::{Drawing, Job, measure};
-use crate::{RenderError, Technique};
+use crate::RenderError;
 
 /// Pixels of width that are drawn.
 const WIDTH: usize = 64;
@@ -37,9 +37,7 @@ fn shrink(job: &mut Job) {
     let height = (width as f64 * screen.height_m / screen.width_m).round().max(1.0);
     job.view.size = [width, height as usize];
     for technique in std::iter::once(&mut job.technique).chain(&mut job.reference) {
-        if let Technique::Mc(knobs) = technique {
-            (knobs.spp, knobs.target_error, knobs.time_limit_s) = (knobs.spp.min(SPP), None, None);
-        }
+        technique.sample_at_most(SPP);
     }
 }
 

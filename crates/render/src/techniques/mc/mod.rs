@@ -32,10 +32,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::techniques::knobs::{self, Knob, Range};
 
-use crate::encode::{Srgb, pack};
 use crate::irradiance::UnitImages;
 use crate::simd::Isa;
-use crate::{Backend, Frame, Layer, Meter, Pixel, RenderError, Renderer, Stats, View, albedo};
+use crate::{
+    Backend, Frame, Meter, Pixel, RenderError, Renderer, Stats, View, Visibility, VisibilityModel, albedo,
+};
 use bounds::Padded;
 use estimate::{Estimator, Row};
 use points::{Points, REPLICATES};
@@ -155,7 +156,7 @@ impl Mc {
         }
     }
 
-    /// Draws all rows; `layers` asks for more than the radiance.
+    /// Draws all rows; `layers` asks for visibilities and standard errors too.
     fn rows(
         &mut self,
         theatre: &Theatre,
@@ -234,54 +235,27 @@ impl Mc {
 }
 
 impl Renderer for Mc {
-    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
-        let (rows, stats) = self.rows(theatre, view, true)?;
-        let n = view.size[0] * view.size[1];
-        let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
-        let mut names: Vec<String> = ["SE.R", "SE.G", "SE.B"].map(String::from).to_vec();
-        let kind = if self.lattice.is_some() { "Vgeo" } else { "Virr" };
-        for (name, _) in sources(theatre) {
-            match coloured {
-                true => names.extend(["R", "G", "B"].map(|c| format!("{kind}.{name}.{c}"))),
-                false => names.push(format!("{kind}.{name}")),
-            }
-        }
-        let mut planes: Vec<Vec<f32>> = (0..3 + names.len()).map(|_| Vec::with_capacity(n)).collect();
+    fn frame(&mut self, theatre: &Theatre, view: &View, visibilities: bool) -> Result<Frame, RenderError> {
+        let (rows, stats) = self.rows(theatre, view, visibilities)?;
+        let [width, height] = view.size;
+        let count = rows.first().map_or(3, |row| row.values.len() / width);
+        let mut planes: Vec<Vec<f32>> = (0..count).map(|_| Vec::with_capacity(width * height)).collect();
         for row in &rows {
-            for (plane, values) in planes.iter_mut().zip(row.values.chunks_exact(view.size[0])) {
+            for (plane, values) in planes.iter_mut().zip(row.values.chunks_exact(width)) {
                 plane.extend_from_slice(values);
             }
         }
         let mut planes = planes.into_iter();
-        let radiance = [(); 3].map(|()| planes.next().expect("three planes of radiance"));
-        let layers = names.into_iter().zip(planes).map(|(name, values)| Layer { name, values });
-        let layers = layers.filter(|l| self.lattice.is_none() || !l.name.starts_with("SE.")).collect();
-        Ok(Frame { size: view.size, radiance, layers, stats })
-    }
-
-    fn display(
-        &mut self,
-        theatre: &Theatre,
-        view: &View,
-        white: f64,
-        out: &mut [u32],
-    ) -> Result<Stats, RenderError> {
-        if out.len() != view.size[0] * view.size[1] {
-            let [w, h] = view.size;
-            return Err(RenderError::View(format!("{} pixels given for {w}x{h}", out.len())));
-        }
-        if !(white.is_finite() && white > 0.0) {
-            return Err(RenderError::View(format!("white = {white}: a radiance above 0")));
-        }
-        let (rows, stats) = self.rows(theatre, view, false)?;
-        let (width, srgb, scale) = (view.size[0], Srgb::get(), (1.0 / white) as f32);
-        for (out, row) in out.chunks_exact_mut(width).zip(&rows) {
-            for (i, pixel) in out.iter_mut().enumerate() {
-                let [r, g, b] = [0, 1, 2].map(|c| srgb.code(row.values[c * width + i] * scale));
-                *pixel = pack(r, g, b);
-            }
-        }
-        Ok(stats)
+        let mut three = || [(); 3].map(|()| planes.next().unwrap_or_default());
+        let radiance = three();
+        let standard_error = visibilities.then(&mut three).filter(|_| self.lattice.is_none());
+        let model = match self.lattice {
+            None => VisibilityModel::Irradiance,
+            Some(_) => VisibilityModel::Geometric,
+        };
+        let names = sources(theatre).map(|(name, _)| name).filter(|_| visibilities);
+        let visibilities = Visibility::each(theatre, names, model, |_, _| planes.next().unwrap_or_default());
+        Ok(Frame { size: view.size, radiance, visibilities, standard_error, stats })
     }
 
     fn watch(&mut self, meter: &Meter) {

@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::techniques::knobs::{self, Knob, Range};
 
-use crate::{Backend, RenderError, Renderer};
+use crate::{Backend, RenderError, Renderer, VisibilityModel};
 
 pub use native::Native;
 pub use skips::Skips;
@@ -133,6 +133,16 @@ pub enum Weights {
     Area,
     /// By each piece's own unshadowed irradiance: tends to what a light meter reads.
     Irradiance,
+}
+
+impl Weights {
+    /// The visibility that the pieces' sum tends to.
+    fn model(self) -> VisibilityModel {
+        match self {
+            Self::Area => VisibilityModel::Geometric,
+            Self::Irradiance => VisibilityModel::Irradiance,
+        }
+    }
 }
 
 /// The renderer for `knobs` on `backend`.

@@ -100,10 +100,14 @@ mod tests {
     }
 
     fn rms(a: &Frame, b: &Frame) -> f64 {
-        assert_eq!(a.layers[0].name, b.layers[0].name);
-        let squares: f64 =
-            a.layers[0].values.iter().zip(&b.layers[0].values).map(|(a, b)| f64::from(a - b).powi(2)).sum();
-        (squares / a.layers[0].values.len() as f64).sqrt()
+        assert_eq!(a.visibilities[0].name(), b.visibilities[0].name());
+        let squares: f64 = a.visibilities[0]
+            .values
+            .iter()
+            .zip(&b.visibilities[0].values)
+            .map(|(a, b)| f64::from(a - b).powi(2))
+            .sum();
+        (squares / a.visibilities[0].values.len() as f64).sqrt()
     }
 
     /// One light is one look-up; more lights come nearer to the area light, which PA knows exactly.
@@ -115,7 +119,7 @@ mod tests {
             let exact = { exact }.radiance(&scene(), &view).unwrap();
             let errors = [1, 4, 16, 64, 256].map(|lights| {
                 let frame = draw(Knobs { lights, ..Knobs::default() }, Backend::Cpu, pixel);
-                assert_eq!(frame.layers.len(), 1);
+                assert_eq!(frame.visibilities.len(), 1);
                 rms(&frame, &exact)
             });
             // A lattice against a lattice of texels: not every step helps as much.
@@ -123,7 +127,7 @@ mod tests {
             assert!(errors[0] > 0.05 && errors[4] < 0.1 * errors[0], "{errors:?}");
         }
         let hard = draw(Knobs { lights: 1, subpixels: 1 }, Backend::Cpu, Pixel::Centre);
-        let codes = hard.layers[0].values.iter().map(|v| f64::from(*v) * 255.0);
+        let codes = hard.visibilities[0].values.iter().map(|v| f64::from(*v) * 255.0);
         assert!({ codes }.all(|c| (c - 40.0).abs() < 1e-3 || (c - 255.0).abs() < 1e-3));
     }
 
