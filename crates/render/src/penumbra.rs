@@ -3,10 +3,9 @@
 use glam::DVec2;
 use kelir_scene::{Mask, Plane, Theatre};
 
-use crate::pa::plan::{Piece, is_tilted};
-use crate::pa::tilted::Frame;
-use crate::pa::window::Windows;
-use crate::project::{ShadowBox, pixel_m};
+use crate::project::tilted::{Piece, PlaneFrame};
+use crate::project::window::Windows;
+use crate::project::{ShadowBox, is_tilted, pixel_m};
 use crate::{Pixel, View};
 
 /// Counts of neighbouring texels that differ, as prefix sums; the mask is framed by one clear texel.
@@ -76,7 +75,7 @@ pub fn mask(theatre: &Theatre, view: &View) -> Vec<bool> {
 
 fn add_tilted(theatre: &Theatre, view: &View, plane: &Plane, sides_m: DVec2, out: &mut [bool]) {
     let edges = Edges::new(&plane.mask);
-    let frame = Frame::new(plane);
+    let frame = PlaneFrame::new(plane);
     let lamp = Piece { emitter: 0, centre_m: theatre.lamp.position_m, size_m: sides_m.into(), weight: 1.0 };
     let half = if view.pixel == Pixel::Area { 0.5 } else { 0.0 };
     let width = view.size[0];

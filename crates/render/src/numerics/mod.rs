@@ -19,7 +19,7 @@ pub use emitters::{EmitterErrors, emitters};
 use crate::oracle::{self, Point};
 use crate::pa::plan::Plan;
 use crate::pa::table::Table;
-use crate::project::pixel_m;
+use crate::project::{is_tilted, pixel_m};
 use crate::{Frame, RenderError, Renderer, View, encode, irradiance, pa, white};
 use variants::{Blocks, Corners, Float, Footprint};
 
@@ -187,7 +187,7 @@ fn compare(
     let narrow = error(&Table::new(mask, 0, false, None));
     let wide = Table::new(mask, 0, true, None);
     let exact = error(&wide);
-    let corners = if pa::plan::is_tilted(plane) {
+    let corners = if is_tilted(plane) {
         f64::NAN
     } else {
         let of = |e: &kelir_scene::Emitter| match e.shape {

@@ -24,7 +24,6 @@ mod skips;
 pub mod table;
 mod tiles;
 pub(crate) mod tilted;
-pub mod window;
 
 use serde::{Deserialize, Serialize};
 

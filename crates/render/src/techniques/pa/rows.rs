@@ -2,7 +2,7 @@
 
 use super::plan::Lookup;
 use super::table::{Sum, Sums, Table};
-use super::window::Windows;
+use crate::project::window::Windows;
 use crate::simd::{Isa, multiversion};
 
 /// Entries behind the last that a vector load may touch.
