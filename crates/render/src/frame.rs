@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
@@ -150,6 +151,13 @@ pub struct Stats {
     pub values: std::collections::BTreeMap<String, f64>,
     /// (step, milliseconds of wall time).
     pub steps_ms: Vec<(String, f64)>,
+}
+
+impl Stats {
+    /// Notes a step that began at `since` and is done now.
+    pub(crate) fn step(&mut self, name: &str, since: Instant) {
+        self.steps_ms.push((name.into(), since.elapsed().as_secs_f64() * 1e3));
+    }
 }
 
 /// How far a long drawing has come, in rows of the image, for whoever shows it; clones count together.

@@ -23,6 +23,7 @@ pub mod penumbra;
 pub mod project;
 mod simd;
 pub mod techniques;
+mod trace;
 
 pub use exposure::white;
 pub use frame::*;

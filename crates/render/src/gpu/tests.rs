@@ -89,7 +89,15 @@ fn no_shader_is_left_out() {
     names.sort();
     assert_eq!(
         names,
-        ["mc.wgsl", "pcss.wgsl", "rows.wgsl", "shade.wgsl", "table.wgsl", "tilted.wgsl", "visibility.wgsl"]
+        [
+            "pcss.wgsl",
+            "rows.wgsl",
+            "shade.wgsl",
+            "table.wgsl",
+            "tilted.wgsl",
+            "trace.wgsl",
+            "visibility.wgsl"
+        ]
     );
 }
 

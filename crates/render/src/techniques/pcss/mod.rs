@@ -33,7 +33,7 @@ use crate::techniques::knobs::{self, Knob, Range};
 
 use crate::frame::emitters;
 use crate::irradiance::UnitImages;
-use crate::mc::points::{Points, REPLICATES};
+use crate::trace::sobol::{Points, REPLICATES, fold};
 use crate::{Backend, Frame, Meter, RenderError, Renderer, Stats, View, Visibility, VisibilityModel, albedo};
 use map::{Beam, Map};
 use native::{Row, Shader};
@@ -225,7 +225,7 @@ impl Pcss {
             patterns: &patterns,
             lit: self.lit.centres(),
             albedo: &albedo,
-            seed: crate::mc::points::fold(self.knobs.seed),
+            seed: fold(self.knobs.seed),
             layers,
             meter: &self.meter,
         };

@@ -2,7 +2,7 @@
 
 use super::bounds::Padded;
 use super::plan::{Axis, EmitterPlan, Plan, PlaneMap, Shape};
-use super::points::{self, Points, REPLICATES};
+use super::sobol::{self, Points, REPLICATES};
 use super::tilted::{Seen, Tilted};
 use crate::simd::Isa;
 
@@ -66,12 +66,11 @@ impl Sampler<'_> {
     #[inline(always)]
     fn pixel<const C: usize, const AREA: bool>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
         let emitter = &self.plan.emitters[k];
-        let key =
-            points::stream(points::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);
-        let mut shifts = [[0; REPLICATES]; points::DIMENSIONS];
+        let key = sobol::stream(sobol::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);
+        let mut shifts = [[0; REPLICATES]; sobol::DIMENSIONS];
         for (d, shifts) in shifts.iter_mut().enumerate() {
             for (r, shift) in shifts.iter_mut().enumerate() {
-                *shift = if self.points.scrambled { points::shift(key, d, r) } else { 0 };
+                *shift = if self.points.scrambled { sobol::shift(key, d, r) } else { 0 };
             }
         }
         let dims = self.points.dims.each_ref().map(|d| &d.as_chunks::<REPLICATES>().0[..self.points.samples]);
