@@ -85,75 +85,32 @@ pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, Re
 struct Mc {
     knobs: Knobs,
     points: Option<Points>,
-    /// Lights that stand still, in place of random points.
-    lattice: Option<Points>,
     tracer: Tracer,
 }
 
 impl Mc {
     fn new(knobs: Knobs, tracer: Tracer) -> Self {
-        Self { knobs, points: None, lattice: None, tracer }
+        Self { knobs, points: None, tracer }
     }
-}
-
-/// The renderer of `lights` × `lights` point lights an emitter, seen from `subpixels` × `subpixels` points of an `area`
-/// pixel: the same maps, masks and bounds with points that stand still and weigh the same.
-pub(crate) fn lattice(
-    lights: usize,
-    subpixels: usize,
-    backend: Backend,
-) -> Result<Box<dyn Renderer>, RenderError> {
-    let (lattice, tracer) = (Some(lattice_points(lights, subpixels)), Tracer::new(backend)?);
-    Ok(Box::new(Mc { knobs: Knobs::default(), points: None, lattice, tracer }))
-}
-
-/// The middles of `lights` × `lights` cells of the emitter, each for the middles of `subpixels` × `subpixels` cells of
-/// the pixel; repeated until every lane has as many.
-fn lattice_points(lights: usize, subpixels: usize) -> Points {
-    let total = (lights * subpixels).pow(2);
-    // 16 is a power of two: the lanes share out a multiple of it.
-    let lanes = REPLICATES >> total.trailing_zeros().min(REPLICATES.trailing_zeros());
-    let samples = total * lanes / REPLICATES;
-    let middle = |k: usize, n: usize| (((k as f64 + 0.5) / n as f64 - 0.5) * 2f64.powi(32)) as i64 as u32;
-    let coordinate = |k: usize, d: usize| match d {
-        0 => middle(k % lights, lights),
-        1 => middle(k / lights % lights, lights),
-        2 => middle(k / lights.pow(2) % subpixels, subpixels),
-        _ => middle(k / lights.pow(2) / subpixels, subpixels),
-    };
-    let dims = [0, 1, 2, 3].map(|d| (0..samples * REPLICATES).map(|i| coordinate(i % total, d)).collect());
-    Points { seed: 0, samples, scrambled: false, dims }
 }
 
 impl Renderer for Mc {
     fn frame(&mut self, theatre: &Theatre, view: &View, visibilities: bool) -> Result<Frame, RenderError> {
         let (mut stats, started) = (Stats::default(), Instant::now());
-        let model = match self.lattice {
-            None => VisibilityModel::Irradiance,
-            Some(_) => VisibilityModel::Geometric,
-        };
-        let mut trace = self.tracer.trace(theatre, view, model, visibilities)?;
+        let mut trace = self.tracer.trace(theatre, view, VisibilityModel::Irradiance, visibilities)?;
         stats.step("prepare", started);
         let clock = Instant::now();
-        let samples = match &self.lattice {
-            Some(lattice) => lattice.samples,
-            None => budget::freeze(&self.knobs, view.size[1], started, |p, rows| trace.rows(&p, rows))?,
-        };
+        let samples = budget::freeze(&self.knobs, view.size[1], started, |p, rows| trace.rows(&p, rows))?;
         stats.step("pilot", clock);
         let clock = Instant::now();
-        let points = match (&self.lattice, self.points.take()) {
-            (Some(lattice), _) => lattice.clone(),
-            (_, Some(points)) if points.samples == samples => points,
+        let points = match self.points.take() {
+            Some(points) if points.samples == samples => points,
             _ => Points::new(self.knobs.seed, samples),
         };
         let rows = trace.all(&points)?;
         self.points = Some(points);
         stats.step("sample", clock);
         trace.count(&rows, samples, &mut stats);
-        if self.lattice.is_some() {
-            // What the lanes of a lattice differ by is no error.
-            return Ok(Frame { standard_error: None, ..trace.frame(&rows, stats) });
-        }
         stats.counts.insert("replicates".into(), REPLICATES as u64);
         summarise(&rows, &mut stats);
         Ok(trace.frame(&rows, stats))
