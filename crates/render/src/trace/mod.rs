@@ -14,7 +14,7 @@
 
 pub(crate) mod bounds;
 mod estimate;
-mod gpu;
+pub(crate) mod gpu;
 mod native;
 mod plan;
 pub(crate) mod sobol;
@@ -32,8 +32,6 @@ use crate::{Backend, Frame, Meter, Pixel, RenderError, Stats, View, Visibility, 
 use bounds::Padded;
 use estimate::Estimator;
 pub(crate) use estimate::Row;
-#[cfg(test)]
-pub(crate) use gpu::WGSL;
 use sobol::{Points, REPLICATES};
 
 /// Keeps masks and E⁰ between frames.

@@ -11,7 +11,6 @@ pub const REPLICATES: usize = 16;
 pub const DIMENSIONS: usize = 4;
 
 /// `samples` points per replicate.
-#[derive(Clone)]
 pub struct Points {
     /// What they were made from.
     pub seed: u64,

@@ -5,7 +5,7 @@ use glam::DVec3;
 use kelir_scene::*;
 
 use super::*;
-use crate::trace::WGSL;
+use crate::trace::gpu::WGSL;
 use crate::trace::tests::{edge, theatre, view};
 use crate::{Pixel, irradiance};
 
