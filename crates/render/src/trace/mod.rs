@@ -14,6 +14,7 @@
 
 pub(crate) mod bounds;
 mod estimate;
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 pub(crate) mod gpu;
 mod native;
 mod plan;
