@@ -7,6 +7,7 @@ use std::time::Instant;
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
+use crate::subject::Subject;
 use crate::{RenderError, encode};
 
 /// How a pixel's value is taken.
@@ -36,12 +37,12 @@ impl View {
     ///
     /// # Errors
     /// [`RenderError::View`]: which size, and which it would have to be.
-    pub fn check(&self, theatre: &Theatre) -> Result<(), RenderError> {
+    pub fn check(&self, subject: &impl Subject) -> Result<(), RenderError> {
         let [w, h] = self.size;
         if w == 0 || h == 0 || w > 1 << 16 || h > 1 << 16 {
             return Err(RenderError::View(format!("size = {w}x{h}: each side from 1 to 65536 pixels")));
         }
-        let (screen_w, screen_h) = (theatre.screen.width_m, theatre.screen.height_m);
+        let [screen_w, screen_h] = subject.sides_m();
         let ideal = w as f64 * screen_h / screen_w;
         if (ideal - h as f64).abs() > 0.5 && (h as f64 * screen_w / screen_h - w as f64).abs() > 0.5 {
             return Err(RenderError::View(format!(
@@ -182,27 +183,27 @@ impl Meter {
     }
 }
 
-/// Draws theatres with one technique on one backend; keeps what it built between calls and reuses what did not change.
-pub trait Renderer: Send {
+/// Draws one kind of [`Subject`] with one technique on one backend; keeps what it built between calls and reuses what did not change.
+pub trait Renderer<S = Theatre>: Send {
     /// The audience's linear radiance, and the emitters' visibilities where they are wanted: what gives no light is skipped otherwise.
-    fn frame(&mut self, theatre: &Theatre, view: &View, visibilities: bool) -> Result<Frame, RenderError>;
+    fn frame(&mut self, subject: &S, view: &View, visibilities: bool) -> Result<Frame, RenderError>;
 
     /// The audience's linear radiance with all visibilities.
-    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
-        self.frame(theatre, view, true)
+    fn radiance(&mut self, subject: &S, view: &View) -> Result<Frame, RenderError> {
+        self.frame(subject, view, true)
     }
 
     /// Display codes: sRGB-encoded clip(L / white), each pixel `0xFFBBGGRR` (bytes R, G, B, 255), into `out` of `width * height`. Who
     /// overrides it gives the codes of the radiance, only sooner.
     fn display(
         &mut self,
-        theatre: &Theatre,
+        subject: &S,
         view: &View,
         white: f64,
         out: &mut [u32],
     ) -> Result<Stats, RenderError> {
         check_display(view, white, out)?;
-        let frame = self.frame(theatre, view, false)?;
+        let frame = self.frame(subject, view, false)?;
         encode::display_into(&frame, white, out);
         Ok(frame.stats)
     }

@@ -25,6 +25,7 @@ pub mod numerics;
 pub mod penumbra;
 pub mod project;
 mod simd;
+pub mod subject;
 pub mod techniques;
 mod trace;
 

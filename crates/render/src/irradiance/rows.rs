@@ -1,10 +1,11 @@
 //! E⁰ along whole rows of pixels, and over all of them.
 
 use glam::{DVec2, DVec3};
-use kelir_scene::{EmitterShape, Screen};
+use kelir_scene::{Ambient, EmitterShape, Screen, Theatre};
 use rayon::prelude::*;
 
 use super::{order, rule, unit};
+use crate::View;
 use crate::project::pixel_m;
 use crate::simd::multiversion;
 
@@ -143,4 +144,31 @@ pub(super) fn means_over_pixels(image: &[f64], [width, height]: [usize; 2]) -> V
         }
     });
     out
+}
+
+/// The brightest unshadowed irradiance over pixels and channels.
+pub(crate) fn brightest(theatre: &Theatre, view: &View) -> f64 {
+    let lamp = &theatre.lamp;
+    let units: Vec<_> = lamp
+        .emitters
+        .iter()
+        .map(|e| (e.radiance, UnitRows::new(&e.shape, lamp.position_m, &theatre.screen, view.size)))
+        .collect();
+    let dome = match theatre.ambient {
+        Ambient::Dome { radiance } => radiance.map(|l| l * std::f64::consts::PI),
+        _ => [0.0; 3],
+    };
+    let mut unit = vec![0.0; view.size[0]];
+    let mut most = 0f64;
+    for j in 0..view.size[1] {
+        let mut sums = vec![dome; view.size[0]];
+        for (radiance, rows) in &units {
+            rows.row(j, &mut unit);
+            for (sum, unit) in sums.iter_mut().zip(&unit) {
+                (0..3).for_each(|c| sum[c] += radiance[c] * unit);
+            }
+        }
+        most = sums.iter().flatten().copied().fold(most, f64::max);
+    }
+    most
 }
