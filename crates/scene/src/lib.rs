@@ -17,6 +17,7 @@ mod read;
 mod reference;
 mod scene;
 mod staging;
+mod subject;
 pub mod theatre;
 mod timeline;
 mod weave;

@@ -54,6 +54,7 @@ pub(crate) fn noted(path: &str, what: Noted) {
 /// Between them these ask for every key.
 const SAMPLES: [&str; 2] = [
     r#"
+subject = "theatre"
 [screen]
 width_m = 1.6
 height_m = 0.9
