@@ -45,7 +45,7 @@ pub struct Args {
     #[arg(long, default_value_t = 1e-4)]
     tolerance: f64,
     #[command(flatten)]
-    figures: Figures,
+    pub(super) figures: Figures,
     /// Also draw error against time, as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,

@@ -15,6 +15,7 @@
 pub(crate) mod bounds;
 mod budget;
 mod estimate;
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod gpu;
 mod native;
 mod plan;

@@ -84,6 +84,11 @@ struct Job<'a> {
     own_channels: usize,
 }
 
+/// The renderer for `knobs` on `gpu`.
+pub(super) fn renderer(gpu: Gpu, knobs: Knobs) -> Result<Box<dyn Renderer>, RenderError> {
+    Ok(Box::new(OnGpu::new(gpu, knobs, &Shaders::default())?))
+}
+
 impl OnGpu {
     /// Compiles `shaders`, which are the default ones but for tests that need wrong ones.
     pub fn new(gpu: Gpu, knobs: Knobs, shaders: &Shaders) -> Result<Self, RenderError> {

@@ -14,6 +14,7 @@
 
 mod background;
 mod dome;
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod gpu;
 mod kept;
 mod native;
@@ -139,7 +140,7 @@ pub enum Weights {
 pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
     knobs.check()?;
     match crate::gpu::choose(backend)? {
-        Some(gpu) => Ok(Box::new(gpu::OnGpu::new(gpu, *knobs, &gpu::Shaders::default())?)),
+        Some(gpu) => gpu::renderer(gpu, *knobs),
         None => Ok(Box::new(Native::new(*knobs))),
     }
 }

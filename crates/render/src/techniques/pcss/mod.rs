@@ -17,6 +17,7 @@
 //! Sample places are Owen-scrambled Sobol points, one of sixteen patterns a pixel, and all that chooses a texel is integer
 //! arithmetic: both backends read the same texels, so their images are equal to the bit.
 
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod gpu;
 mod map;
 mod native;
