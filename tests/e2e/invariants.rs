@@ -8,8 +8,15 @@ use std::process::Command;
 use serde_json::Value;
 
 /// Crates that stay pure: no async runtime, database, web server or GPU anywhere below them.
-const PURE: [&str; 6] =
-    ["kelir-scene", "kelir-stats", "kelir-study", "kelir-vision", "kelir-plot", "kelir-report"];
+const PURE: [&str; 7] = [
+    "kelir-reader",
+    "kelir-scene",
+    "kelir-stats",
+    "kelir-study",
+    "kelir-vision",
+    "kelir-plot",
+    "kelir-report",
+];
 const IMPURE: [&str; 5] = ["tokio", "sqlx", "rusqlite", "axum", "wgpu"];
 /// Libraries that one room alone may name.
 const OWNED: [(&str, &str); 4] = [
@@ -18,6 +25,10 @@ const OWNED: [(&str, &str); 4] = [
     ("rusqlite", "kelir-store"),
     ("axum", "kelir-server"),
 ];
+
+/// Rooms that must not reach another: the reader knows nothing of what it reads, a study nothing of what is drawn.
+const APART: [(&str, &str); 3] =
+    [("kelir-reader", "kelir-scene"), ("kelir-reader", "kelir-study"), ("kelir-study", "kelir-scene")];
 
 /// Every broken invariant, as a sentence.
 fn violations(metadata: &Value) -> Vec<String> {
@@ -40,6 +51,11 @@ fn violations(metadata: &Value) -> Vec<String> {
         for (library, owner) in OWNED {
             if direct.contains(library) && name != owner {
                 found.push(format!("{name} names {library}: only {owner} may"));
+            }
+        }
+        for (room, other) in APART {
+            if name == room && closure(member, &edges).iter().any(|id| names[id] == other) {
+                found.push(format!("{room} reaches {other}: it must know nothing of it"));
             }
         }
         if PURE.contains(&name) {
@@ -112,15 +128,20 @@ fn a_broken_wall_is_seen() {
         let package = packages(&doctored).find(|p| p["name"] == name).expect("package");
         package["id"].as_str().expect("id").to_owned()
     };
-    let (stats, axum) = (id_of("kelir-stats"), id_of("axum"));
-    let edge =
-        serde_json::json!({"name": "axum", "pkg": axum, "dep_kinds": [{"kind": null, "target": null}]});
+    let edges = [("kelir-stats", "axum"), ("kelir-study", "kelir-scene")].map(|(from, to)| {
+        let kinds = serde_json::json!([{"kind": null, "target": null}]);
+        (id_of(from), serde_json::json!({"name": to, "pkg": id_of(to), "dep_kinds": kinds}))
+    });
     let nodes = doctored["resolve"]["nodes"].as_array_mut().expect("nodes");
-    let node = nodes.iter_mut().find(|node| node["id"] == stats.as_str()).expect("node");
-    node["deps"].as_array_mut().expect("deps").push(edge);
+    for (from, edge) in edges {
+        let node = nodes.iter_mut().find(|node| node["id"] == from.as_str()).expect("node");
+        node["deps"].as_array_mut().expect("deps").push(edge);
+    }
     let found = violations(&doctored);
     assert!(found.iter().any(|v| v == "kelir-stats names axum: only kelir-server may"), "{found:?}");
     assert!(found.iter().any(|v| v == "kelir-stats reaches axum: it must stay pure"), "{found:?}");
+    let apart = "kelir-study reaches kelir-scene: it must know nothing of it";
+    assert!(found.iter().any(|v| v == apart), "{found:?}");
     // axum brings tokio, and study builds on stats: both are seen through the chain.
     assert!(found.iter().any(|v| v == "kelir-stats reaches tokio: it must stay pure"), "{found:?}");
 }

@@ -39,7 +39,7 @@ struct Found<'a> {
 impl Found<'_> {
     fn add(&mut self, field: String, value: Option<&str>, rule: impl Into<String>) {
         let value = value.map(|v| format!("{v:?}"));
-        let problem = Problem { file: self.file.to_owned(), field, value, rule: rule.into() };
+        let problem = Problem::new(self.file, field, value, rule);
         if !self.problems.contains(&problem) {
             self.problems.push(problem);
         }

@@ -1,7 +1,7 @@
 //! The errors of starting.
 
 use kelir_store::StoreError;
-use kelir_study::StudyErrors;
+use kelir_study::Problems;
 use std::path::PathBuf;
 
 /// Why a study file cannot be used.
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub enum StudyFileError {
     /// Everything that is wrong with it, its scenes, conditions and pictures included.
     #[error("{0}")]
-    Invalid(#[from] StudyErrors),
+    Invalid(#[from] Problems),
     /// It cannot be read.
     #[error("{path}: {source}")]
     Unreadable {

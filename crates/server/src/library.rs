@@ -6,7 +6,7 @@ use crate::remembered::{Known, Remembered, SceneFacts};
 use crate::weight::{self, Weight};
 use kelir_scene::{Assets, Scene};
 use kelir_store::sha256_hex;
-use kelir_study::{Problem, StudyDefinition, StudyErrors};
+use kelir_study::{Problem, Problems, StudyDefinition};
 use rust_embed::RustEmbed;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::{self, ErrorKind};
@@ -130,7 +130,7 @@ impl Library {
         }
         match study {
             Some(study) if problems.is_empty() => Ok(study),
-            _ => Err(StudyErrors(problems).into()),
+            _ => Err(Problems::new(problems).into()),
         }
     }
 
@@ -176,16 +176,11 @@ impl Library {
     }
 
     fn scene_by(&self, path: &str, files: &dyn Assets) -> Result<Scene, Vec<Problem>> {
-        let whole = |rule: String| {
-            vec![Problem { file: path.to_owned(), field: "scene".to_owned(), value: None, rule }]
-        };
+        let whole = |rule: String| vec![Problem::new(path, "scene", None, rule)];
         let bytes = files.read(path).map_err(|error| whole(error.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|_| whole("is no UTF-8 text".to_owned()))?;
         let path = normalise(path).ok_or_else(|| whole("leads out of the study's folders".to_owned()))?;
-        Scene::parse(&path, &text, files).map_err(|errors| {
-            let problems = errors.problems().iter().cloned();
-            problems.map(|p| Problem { file: p.file, field: p.field, value: p.value, rule: p.rule }).collect()
-        })
+        Scene::parse(&path, &text, files).map_err(Vec::from)
     }
 }
 
