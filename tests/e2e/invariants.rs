@@ -8,8 +8,15 @@ use std::process::Command;
 use serde_json::Value;
 
 /// Crates that stay pure: no async runtime, database, web server or GPU anywhere below them.
-const PURE: [&str; 6] =
-    ["kelir-scene", "kelir-stats", "kelir-study", "kelir-vision", "kelir-plot", "kelir-report"];
+const PURE: [&str; 7] = [
+    "kelir-reader",
+    "kelir-scene",
+    "kelir-stats",
+    "kelir-study",
+    "kelir-vision",
+    "kelir-plot",
+    "kelir-report",
+];
 const IMPURE: [&str; 5] = ["tokio", "sqlx", "rusqlite", "axum", "wgpu"];
 /// What answers requests, and judges passwords for it: the house knows no HTTP.
 const HTTP: [&str; 6] = ["axum", "hyper", "tower", "tower-http", "argon2", "kelir-server"];
@@ -23,6 +30,10 @@ const OWNED: [(&str, &[&str]); 7] = [
     ("kelir-house", &["kelir-server", "kelir"]),
     ("kelir-server", &["kelir"]),
 ];
+
+/// Rooms that must not reach another: the reader knows nothing of what it reads, a study nothing of what is drawn.
+const APART: [(&str, &str); 3] =
+    [("kelir-reader", "kelir-scene"), ("kelir-reader", "kelir-study"), ("kelir-study", "kelir-scene")];
 
 /// Every broken invariant, as a sentence.
 fn violations(metadata: &Value) -> Vec<String> {
@@ -45,6 +56,11 @@ fn violations(metadata: &Value) -> Vec<String> {
         for (named, owners) in OWNED {
             if direct.contains(named) && !owners.contains(&name) {
                 found.push(format!("{name} names {named}: only {} may", owners.join(" and ")));
+            }
+        }
+        for (room, other) in APART {
+            if name == room && closure(member, &edges).iter().any(|id| names[id] == other) {
+                found.push(format!("{room} reaches {other}: it must know nothing of it"));
             }
         }
         let (unreached, why): (&[&str], _) = match name {
@@ -114,9 +130,12 @@ fn rooms_keep_their_walls() {
 #[test]
 fn a_broken_wall_is_seen() {
     let mut doctored = metadata();
-    for (from, to) in
-        [("kelir-stats", "axum"), ("kelir-house", "kelir-server"), ("kelir-server", "kelir-render")]
-    {
+    for (from, to) in [
+        ("kelir-stats", "axum"),
+        ("kelir-house", "kelir-server"),
+        ("kelir-server", "kelir-render"),
+        ("kelir-study", "kelir-scene"),
+    ] {
         add_edge(&mut doctored, from, to);
     }
     let found = violations(&doctored);
@@ -129,6 +148,7 @@ fn a_broken_wall_is_seen() {
         "kelir-house reaches hyper: it must know no HTTP",
         "kelir-house reaches argon2: it must know no HTTP",
         "kelir-server names kelir-render: only kelir-house and kelir may",
+        "kelir-study reaches kelir-scene: it must know nothing of it",
     ] {
         assert!(found.iter().any(|v| v == broken), "{broken}: {found:?}");
     }

@@ -4,7 +4,7 @@ use crate::library::{Library, beside};
 use crate::task::{Task, tasks};
 use crate::{picture, render};
 use kelir_render::RenderError;
-use kelir_study::{Block, Condition, Item, Kind, Problem, StudyDefinition, StudyErrors};
+use kelir_study::{Block, Condition, Item, Kind, Problem, Problems, StudyDefinition};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub enum StudyFileError {
     /// Everything that is wrong with it, its scenes, conditions and pictures included.
     #[error("{0}")]
-    Invalid(#[from] StudyErrors),
+    Invalid(#[from] Problems),
     /// It cannot be read.
     #[error("{path}: {source}")]
     Unreadable {
@@ -61,7 +61,7 @@ impl Library {
         }
         match study {
             Some(study) if problems.is_empty() => Ok(study),
-            _ => Err(StudyErrors(problems).into()),
+            _ => Err(Problems::new(problems).into()),
         }
     }
 }
@@ -95,7 +95,7 @@ struct Found<'a> {
 impl Found<'_> {
     fn add(&mut self, field: String, value: Option<&str>, rule: impl Into<String>) {
         let value = value.map(|v| format!("{v:?}"));
-        let problem = Problem { file: self.file.to_owned(), field, value, rule: rule.into() };
+        let problem = Problem::new(self.file, field, value, rule);
         if !self.problems.contains(&problem) {
             self.problems.push(problem);
         }

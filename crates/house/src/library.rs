@@ -126,16 +126,11 @@ impl Library {
     }
 
     fn scene_by(&self, path: &str, files: &dyn Assets) -> Result<Scene, Vec<Problem>> {
-        let whole = |rule: String| {
-            vec![Problem { file: path.to_owned(), field: "scene".to_owned(), value: None, rule }]
-        };
+        let whole = |rule: String| vec![Problem::new(path, "scene", None, rule)];
         let bytes = files.read(path).map_err(|error| whole(error.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|_| whole("is no UTF-8 text".to_owned()))?;
         let path = normalise(path).ok_or_else(|| whole("leads out of the study's folders".to_owned()))?;
-        Scene::parse(&path, &text, files).map_err(|errors| {
-            let problems = errors.problems().iter().cloned();
-            problems.map(|p| Problem { file: p.file, field: p.field, value: p.value, rule: p.rule }).collect()
-        })
+        Scene::parse(&path, &text, files).map_err(Vec::from)
     }
 }
 

@@ -1,7 +1,8 @@
 //! What ships inside the binary, by name: no checkout is needed for it.
 
 use crate::library::{BuiltIn, Library};
-use kelir_scene::{Scene, SceneErrors, did_you_mean};
+use kelir_reader::did_you_mean;
+use kelir_scene::{Problems, Scene};
 use std::path::Path;
 
 /// Kinds of files that ship, each a folder of TOML files.
@@ -90,5 +91,5 @@ pub enum SceneRefused {
     Unknown(String),
     /// What is wrong with it.
     #[error(transparent)]
-    Wrong(#[from] SceneErrors),
+    Wrong(#[from] Problems),
 }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use image::DynamicImage;
+use kelir_reader::Node;
 
 use crate::colour::{srgb_to_linear, srgb8_to_linear};
 use crate::limits::{self, COORDINATE_M, LENGTH_M, RADIANCE};
 use crate::load::Loader;
 use crate::puppet::bitmap;
-use crate::read::Node;
 use crate::theatre::{Albedo, Ambient, Emitter, EmitterShape, Exposure, LinearImage, Screen};
 use crate::weave::Weave;
 
@@ -237,7 +237,7 @@ pub(crate) fn exposure(node: &Node) -> Option<Exposure> {
         "\"auto\" or the radiance that is shown as white; without it \"auto\"",
         Exposure::Auto,
         |n| {
-            if n.is_string() {
+            if n.as_str().is_some() {
                 return n.choice(&[("auto", Exposure::Auto)]);
             }
             let white =

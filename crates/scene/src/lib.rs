@@ -1,6 +1,6 @@
 //! What is drawn: a scene file becomes a [`Scene`], and a scene at one instant a [`Theatre`].
 //!
-//! Reading is strict and never stops at the first problem: [`SceneErrors`] holds all of them, each with file, field,
+//! Reading is strict and never stops at the first problem: [`Problems`] holds all of them, each with file, field,
 //! value and rule. Input may be hostile; [`limits`] says how large a scene may be.
 //!
 //! `docs/reference/scene-file.md` lists every key; it is made of what the reader asks for.
@@ -10,9 +10,7 @@ mod colour;
 mod fields;
 pub mod limits;
 mod load;
-mod problem;
 mod puppet;
-mod read;
 #[cfg(test)]
 mod reference;
 mod scene;
@@ -24,8 +22,7 @@ mod weave;
 
 pub use assets::{Assets, DirAssets};
 pub use colour::srgb_to_linear;
-pub use problem::{Problem, SceneErrors};
-pub use read::{did_you_mean, list};
+pub use kelir_reader::{Problem, Problems};
 pub use scene::Scene;
 pub use theatre::*;
 pub use timeline::Timeline;

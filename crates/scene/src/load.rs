@@ -5,24 +5,24 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::rc::Rc;
 
-use crate::assets::{Assets, resolve};
-use crate::problem::Problem;
-use crate::read::Node;
+use kelir_reader::{Node, Reading};
 
-/// Reads and remembers files, and collects what is wrong with them.
+use crate::assets::{Assets, resolve};
+
+/// Reads and remembers files of one reading.
 pub(crate) struct Loader<'a> {
     assets: &'a dyn Assets,
     /// What messages put before a path from the root.
     prefix: String,
     files: RefCell<BTreeMap<String, Rc<[u8]>>>,
-    pub problems: &'a RefCell<Vec<Problem>>,
+    pub reading: &'a Reading,
 }
 
 impl<'a> Loader<'a> {
     /// `label` is how the caller calls the scene file, `name` its path from the root.
-    pub fn new(assets: &'a dyn Assets, label: &str, name: &str, problems: &'a RefCell<Vec<Problem>>) -> Self {
+    pub fn new(assets: &'a dyn Assets, label: &str, name: &str, reading: &'a Reading) -> Self {
         let prefix = label.strip_suffix(name).unwrap_or("").to_owned();
-        Self { assets, prefix, files: RefCell::default(), problems }
+        Self { assets, prefix, files: RefCell::default(), reading }
     }
 
     /// How messages call a file.

@@ -1,21 +1,18 @@
 //! A scene: read, checked as a whole, and staged at any instant.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use kelir_reader::{Fields, Node, Problem, Problems, Reading};
 use sha2::{Digest, Sha256};
-use toml::de::DeValue;
 
 use crate::assets::{Assets, DirAssets, read_file, root_of};
 use crate::fields;
 use crate::limits;
 use crate::load::Loader;
-use crate::problem::{Problem, SceneErrors};
 use crate::puppet::read::{Entry, degrees, find_part, pose_deg, tilt};
-use crate::read::{Fields, Node, Source, canonical};
 use crate::staging::{Misplaced, Puppet, Staging};
 use crate::subject::{self, Subject};
 use crate::theatre::{Albedo, Ambient, Emitter, Exposure, Lamp, Mask, Texels, Theatre};
@@ -40,12 +37,9 @@ impl Scene {
     ///
     /// # Errors
     /// Everything that is wrong with the scene and the files that it names.
-    pub fn from_path(path: &Path) -> Result<Scene, SceneErrors> {
+    pub fn from_path(path: &Path) -> Result<Scene, Problems> {
         let label = path.to_string_lossy();
-        let refuse = |rule: String| {
-            let problem = Problem { file: label.to_string(), field: String::new(), value: None, rule };
-            SceneErrors::new(vec![problem])
-        };
+        let refuse = |rule: String| Problems::new(vec![Problem::new(label.clone(), "", None, rule)]);
         let bytes =
             read_file(path, limits::SCENE_BYTES).map_err(|e| refuse(format!("can't be read: {e}")))?;
         let text = String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text".to_owned()))?;
@@ -58,7 +52,7 @@ impl Scene {
     ///
     /// # Errors
     /// Everything that is wrong with the scene and the files that it names.
-    pub fn parse(name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, SceneErrors> {
+    pub fn parse(name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, Problems> {
         read(name, name, toml, assets)
     }
 
@@ -103,29 +97,31 @@ impl Scene {
 }
 
 /// `label` is how messages call the file, `name` its path from the assets' root.
-fn read(label: &str, name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, SceneErrors> {
-    let problems = RefCell::default();
-    let loader = Loader::new(assets, label, name, &problems);
-    let source = Source::new(label, toml, &problems);
-    let scene = read_scene(&source, toml, name, loader);
-    let problems = problems.take();
-    match scene {
-        Some(scene) if problems.is_empty() => Ok(scene),
-        _ => Err(SceneErrors::new(problems)),
-    }
+fn read(label: &str, name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, Problems> {
+    let reading = Reading::default();
+    let scene = read_into(&reading, label, name, toml, assets);
+    reading.end(scene)
 }
 
-fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option<Scene> {
+/// Reads a scene with the files that it names into a reading.
+pub(crate) fn read_into(
+    reading: &Reading,
+    label: &str,
+    name: &str,
+    toml: &str,
+    assets: &dyn Assets,
+) -> Option<Scene> {
+    let loader = Loader::new(assets, label, name, reading);
+    let source = reading.source(label, toml);
     if toml.len() > limits::SCENE_BYTES {
-        source.problem(
-            "",
-            None,
-            format!("has {} bytes; a scene has at most {}", toml.len(), limits::SCENE_BYTES),
-        );
+        let rule = format!("has {} bytes; a scene has at most {}", toml.len(), limits::SCENE_BYTES);
+        source.refuse("", None, rule);
         return None;
     }
-    let table = DeValue::Table(source.parse()?.into_inner());
-    let root = source.root(&table);
+    source.read(|root| read_scene(root, name, loader))
+}
+
+fn read_scene(root: &Node, name: &str, loader: Loader) -> Option<Scene> {
     let mut sections = root.table()?;
     let subject = sections.optional(
         "subject",
@@ -165,10 +161,10 @@ fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option
     if let (Some(screen), Some(emitters), Some(ambient), Some(Exposure::Auto)) =
         (&screen, &emitters, &ambient, exposure)
     {
-        check_light(&screen.albedo, emitters, ambient, white.as_ref(), &root);
+        check_light(&screen.albedo, emitters, ambient, white.as_ref(), root);
     }
     if let Some(lamp_m) = lamp_m {
-        check_still(lamp_m.z, &entries, &root);
+        check_still(lamp_m.z, &entries, root);
     }
     let lamp = Lamp { position_m: lamp_m?, emitters: emitters? };
     let entries: Vec<Entry> = entries.into_iter().collect::<Option<_>>()?;
@@ -176,9 +172,9 @@ fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option
     let settings = entries.iter().map(|e| e.setting.clone()).collect();
     let staging = Staging { lamp_m: lamp.position_m, puppets: settings };
     if let Some(timeline) = &timeline {
-        check_timeline(timeline, &staging, &entries, source);
+        check_timeline(timeline, &staging, &entries, root);
     }
-    if !loader.problems.borrow().is_empty() {
+    if !loader.reading.is_sound() {
         return None;
     }
 
@@ -190,7 +186,7 @@ fn read_scene(source: &Source, toml: &str, name: &str, loader: Loader) -> Option
     }
     let planes = puppets.iter_mut().zip(&staging.puppets).map(|(p, s)| p.pose(s)).collect();
     let still = Theatre { screen, lamp, ambient, planes, exposure };
-    let sha256 = hash(&canonical(&table), loader.files());
+    let sha256 = hash(&root.canonical(), loader.files());
     Some(Scene { sha256, puppets, staging, timeline, still })
 }
 
@@ -280,14 +276,14 @@ fn check_still(lamp_z_m: f64, entries: &[Option<Entry>], root: &Node) {
     }
 }
 
-fn check_timeline(timeline: &Timeline, staging: &Staging, entries: &[Entry], source: &Source) {
+fn check_timeline(timeline: &Timeline, staging: &Staging, entries: &[Entry], root: &Node) {
     let frames = timeline.frame_count();
     let parts: usize = entries.iter().map(|e| e.parts.len() + 1).sum();
     let keys = timeline.tracks.iter().map(|t| t.keys.len()).sum::<usize>();
     if (frames + keys).saturating_mul(parts + timeline.tracks.len()) > 20_000_000 {
         let rule =
             format!("{frames} frames and {keys} keys of {parts} parts are too many; shorten the timeline");
-        return source.problem("timeline", None, rule);
+        return root.report("timeline", rule);
     }
     let nothing = nothing();
     let key_times = timeline.tracks.iter().flat_map(|t| t.keys.iter().map(|(t, _)| *t));
@@ -307,14 +303,14 @@ fn check_timeline(timeline: &Timeline, staging: &Staging, entries: &[Entry], sou
                         _ => format!("puppets[{i}] is out of place"),
                     };
                     let rule = rule_of(&misplaced, staging.lamp_m.z);
-                    source.problem("timeline", None, format!("at {instant} s {at}: {rule}"));
+                    root.report("timeline", format!("at {instant} s {at}: {rule}"));
                 }
             }
         }
         if texels > limits::SCENE_TEXELS {
             let most = limits::SCENE_TEXELS;
             let rule = format!("at {instant} s the puppets have {texels} texels in all; at most {most}");
-            return source.problem("timeline", None, rule);
+            return root.report("timeline", rule);
         }
     }
 }

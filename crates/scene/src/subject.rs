@@ -1,6 +1,6 @@
 //! What a scene file says that it shows.
 
-use crate::read::Node;
+use kelir_reader::Node;
 
 /// What is shown; each has sections of its own in a scene file.
 #[derive(Clone, Copy, PartialEq)]

@@ -1,7 +1,8 @@
 //! Values that change with time: tracks of keys, eased between.
 
+use kelir_reader::Node;
+
 use crate::limits;
-use crate::read::Node;
 
 /// How an animation runs.
 #[derive(Clone, Debug)]

@@ -1,9 +1,9 @@
 //! Procedural cotton cloth: a plain weave seen with the light behind it.
 
+use kelir_reader::Node;
 use rayon::prelude::*;
 
 use crate::limits;
-use crate::read::Node;
 use crate::theatre::LinearImage;
 
 /// The cloth's parameters.

@@ -1,8 +1,8 @@
 //! How a study is conducted: when a response counts, and whose visit is whose.
 
-use crate::fields::{Fields, Gatherer, number, text};
+use crate::fields::{SECTION, number, text};
+use kelir_reader::{Fields, Node};
 use serde::{Deserialize, Serialize};
-use toml::Value;
 use utoipa::ToSchema;
 
 /// The newest edition of the study file's defaults.
@@ -29,12 +29,12 @@ impl ResponseRules {
         }
     }
 
-    pub(crate) fn read(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<ResponseRules> {
-        let Some(value) = fields.raw("response") else { return Some(ResponseRules::default()) };
-        let mut fields = Fields::of(gatherer, "response".to_owned(), value)?;
-        let mut ms = |key| fields.get(key, "milliseconds from 0 to 60000", |v| number(v, 0.0, 60_000.0));
+    pub(crate) fn read(fields: &mut Fields<'_>) -> Option<ResponseRules> {
+        let Some(node) = fields.given("response", SECTION) else { return Some(ResponseRules::default()) };
+        let mut fields = node.table()?;
+        let mut ms = |key| fields.may(key, "milliseconds from 0 to 60000", |v| number(v, 0.0, 60_000.0));
         let rules = ResponseRules { min_visible_ms: ms("min_visible_ms"), min_gap_ms: ms("min_gap_ms") };
-        fields.finish();
+        fields.done();
         Some(rules)
     }
 }
@@ -70,23 +70,23 @@ pub struct SessionRules {
 }
 
 impl SessionRules {
-    pub(crate) fn read(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<SessionRules> {
-        let Some(value) = fields.raw("session") else { return Some(SessionRules::default()) };
-        let mut fields = Fields::of(gatherer, "session".to_owned(), value)?;
-        let repeat = fields.get("repeat", "\"flag\", \"resume\" or \"refuse\"", |v| match v.as_str()? {
+    pub(crate) fn read(fields: &mut Fields<'_>) -> Option<SessionRules> {
+        let Some(node) = fields.given("session", SECTION) else { return Some(SessionRules::default()) };
+        let mut fields = node.table()?;
+        let repeat = fields.may("repeat", "\"flag\", \"resume\" or \"refuse\"", |v| match v.as_str()? {
             "flag" => Some(Repeat::Flag),
             "resume" => Some(Repeat::Resume),
             "refuse" => Some(Repeat::Refuse),
             _ => None,
         });
-        let per_visit = fields.get("per_visit", "true or false", Value::as_bool);
-        let id = fields.get("id", "the name of a parameter, of 1 to 64 characters", |v| text(v, 64));
-        let params = fields.get("params", "at most 64 different names of 1 to 64 characters", |v| {
+        let per_visit = fields.may("per_visit", "true or false", Node::as_bool);
+        let id = fields.may("id", "the name of a parameter, of 1 to 64 characters", |v| text(v, 64));
+        let params = fields.may("params", "at most 64 different names of 1 to 64 characters", |v| {
             let names: Vec<String> = v.as_array()?.iter().map(|v| text(v, 64)).collect::<Option<_>>()?;
             let different: std::collections::BTreeSet<&String> = names.iter().collect();
             (names.len() <= 64 && different.len() == names.len()).then_some(names)
         });
-        fields.finish();
+        fields.done();
         Some(SessionRules {
             repeat: repeat.unwrap_or_default(),
             per_visit: per_visit.unwrap_or(false),

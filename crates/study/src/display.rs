@@ -1,10 +1,10 @@
 //! `[display]`: the sizes at which each stimulus is made, and what a page does with room beyond them.
 
 use crate::definition::StudyDefinition;
-use crate::fields::{Fields, Gatherer, integer};
+use crate::fields::{SECTION, integer};
 use crate::schema::worded;
+use kelir_reader::{Fields, Node};
 use serde::{Deserialize, Serialize};
-use toml::Value;
 use utoipa::ToSchema;
 
 /// Screens are not larger yet; a film of this size would fill a browser's memory.
@@ -76,27 +76,26 @@ impl StudyDefinition {
 }
 
 /// Reads `size` and `[display]`; nothing where one of them is wrong, which has been reported.
-pub(crate) fn read(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> (Option<[u32; 2]>, DisplayRules) {
-    let value = fields.raw("display");
-    let mut display = value.and_then(|value| Fields::of(gatherer, "display".to_owned(), value));
+pub(crate) fn read(fields: &mut Fields<'_>) -> (Option<[u32; 2]>, DisplayRules) {
+    let mut display = fields.given("display", SECTION).and_then(|node| node.table());
     let (mut listed, mut rules) = (false, DisplayRules::default());
     if let Some(display) = &mut display {
         listed = display.has("sizes");
-        rules.sizes = display.get("sizes", SIZES, sizes).unwrap_or_default();
-        rules.fit = display.get("fit", "\"native\", \"integer\" or \"fill\"", |v| {
+        rules.sizes = display.may("sizes", SIZES, sizes).unwrap_or_default();
+        rules.fit = display.may("fit", "\"native\", \"integer\" or \"fill\"", |v| {
             Fit::ALL.iter().copied().find(|fit| v.as_str() == Some(fit.as_str()))
         });
     }
     if let Some(display) = display {
-        display.finish();
+        display.done();
     }
     if !listed {
-        return (fields.need("size", SIZE, size), rules);
+        return (fields.must("size", SIZE, size), rules);
     }
-    let (given, smallest) = (fields.get("size", SIZE, size), rules.sizes.first().copied());
+    let (given, smallest) = (fields.may("size", SIZE, size), rules.sizes.first().copied());
     if given.is_some() && smallest.is_some() && given != smallest {
-        let value = fields.raw("size");
-        fields.report("size", value, "must be the first of display.sizes where both are there");
+        let rule = "must be the first of display.sizes where both are there";
+        fields.reject("size", rule);
     }
     // One size is the same study however it is written.
     if rules.sizes.len() == 1 {
@@ -105,12 +104,12 @@ pub(crate) fn read(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> (Option<
     (smallest, rules)
 }
 
-fn size(value: &Value) -> Option<[u32; 2]> {
-    let [w, h] = value.as_array()?.as_slice() else { return None };
+fn size(value: &Node) -> Option<[u32; 2]> {
+    let [w, h] = &value.as_array()?[..] else { return None };
     Some([integer(w, 16, LARGEST[0])? as u32, integer(h, 16, LARGEST[1])? as u32])
 }
 
-fn sizes(value: &Value) -> Option<Vec<[u32; 2]>> {
+fn sizes(value: &Node) -> Option<Vec<[u32; 2]>> {
     let sizes: Vec<[u32; 2]> = value.as_array()?.iter().map(size).collect::<Option<_>>()?;
     let [w, h] = sizes.first()?.map(f64::from);
     let alike = |[width, height]: &[u32; 2]| (f64::from(*width) * h / w - f64::from(*height)).abs() <= 1.0;

@@ -1,11 +1,11 @@
 //! A study in several languages: its own, and the translations of all that participants read.
 
 use crate::definition::{StudyDefinition, Texts};
-use crate::fields::{Fields, Gatherer, text};
+use crate::fields::{SECTION, text};
 use crate::parse::{QUESTION, TITLE, read_texts};
+use kelir_reader::Fields;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use toml::Value;
 use utoipa::ToSchema;
 
 /// The language of a file that names none.
@@ -39,48 +39,39 @@ impl StudyDefinition {
 
 /// The study's own language.
 pub(crate) fn read_language(fields: &mut Fields<'_>) -> Option<String> {
-    let read =
-        fields.get("language", LANGUAGE, |v| v.as_str().filter(|tag| language(tag)).map(str::to_owned));
-    if fields.has("language") { read } else { Some(unnamed()) }
+    fields.defaulted("language", LANGUAGE, unnamed(), |v| {
+        v.as_str().filter(|tag| language(tag)).map(str::to_owned)
+    })
 }
 
 /// The translations by language; each is whole.
 pub(crate) fn read_translations(
-    gatherer: &Gatherer<'_>,
     fields: &mut Fields<'_>,
     own: Option<&str>,
 ) -> Option<BTreeMap<String, Translation>> {
-    let Some(value) = fields.raw("translations") else { return Some(BTreeMap::new()) };
-    let Some(table) = value.as_table() else {
-        fields.report("translations", Some(value), "must be a table with a table for each language");
-        return None;
-    };
+    let Some(node) = fields.given("translations", SECTION) else { return Some(BTreeMap::new()) };
+    let table = node.must("a table with a table for each language", |v| v.as_entries())?;
     let mut translations = BTreeMap::<String, Translation>::new();
     let mut known: Vec<String> = Vec::new();
-    for (tag, value) in table {
-        let path = format!("translations.{tag}");
+    for (tag, node) in table {
         if !language(tag) {
-            gatherer.report(&path, Some(&Value::String(tag.clone())), format!("must be {LANGUAGE}"));
+            node.refuse::<()>(format!("must be {LANGUAGE}"));
         }
         if own.is_some_and(|own| own.eq_ignore_ascii_case(tag)) {
-            gatherer.report(
-                &path,
-                None,
-                "is the study's own language, whose texts stand outside the translations",
-            );
+            node.refuse::<()>("is the study's own language, whose texts stand outside the translations");
         }
         // "pt-BR" and "pt-br" are one language.
         if known.contains(&tag.to_ascii_lowercase()) {
-            gatherer.report(&path, None, "is a language that is there already");
+            node.refuse::<()>("is a language that is there already");
         }
         known.push(tag.to_ascii_lowercase());
-        let mut fields = Fields::of(gatherer, path, value)?;
-        let title = fields.need("title", TITLE, |v| text(v, 200));
-        let question = fields.need("question", QUESTION, |v| text(v, 300));
-        let texts = read_texts(gatherer, &mut fields);
-        fields.finish();
+        let mut fields = node.table()?;
+        let title = fields.must("title", TITLE, |v| text(v, 200));
+        let question = fields.must("question", QUESTION, |v| text(v, 300));
+        let texts = read_texts(&mut fields);
+        fields.done();
         if let (Some(title), Some(question), Some(texts)) = (title, question, texts) {
-            translations.insert(tag.clone(), Translation { title, question, texts });
+            translations.insert(tag.to_owned(), Translation { title, question, texts });
         }
     }
     Some(translations)

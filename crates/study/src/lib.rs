@@ -8,7 +8,6 @@ mod display;
 mod fields;
 mod languages;
 mod parse;
-mod problems;
 #[cfg(test)]
 mod reference;
 
@@ -31,7 +30,7 @@ pub use definition::{
     StudyDefinition, Texts,
 };
 pub use display::{DisplayRules, Fit};
+pub use kelir_reader::{Problem, Problems};
 pub use languages::Translation;
 pub use plan::{Decision, Procedures, Trial, TrialPlan, next_trials};
-pub use problems::{Problem, StudyErrors};
 pub use trials::TrialKind;

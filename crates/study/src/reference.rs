@@ -1,40 +1,11 @@
 //! The reference page of study files, made of what their parser asks for; the guide beside the studies names every key of it.
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
-use crate::StudyDefinition;
+use crate::parse::read_into;
 use crate::trials::TrialKind;
-use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet};
+use kelir_reader::{Asked, Reading};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// A key: its place in the order of asking, whether it may not be missing, and its rule where it has one of its own.
-#[derive(Clone, Default)]
-struct Key {
-    place: usize,
-    needed: bool,
-    rule: Option<String>,
-}
-
-thread_local! {
-    static ASKED: RefCell<BTreeMap<String, Key>> = RefCell::default();
-}
-
-/// Writes down what was asked for. Every item of a list is read alike: `[3]` is told as `[]`.
-pub(crate) fn noted(path: &str, asked: Option<(bool, &str)>) {
-    let place: String = path
-        .split('[')
-        .map(|part| part.split_once(']').map_or(part.to_owned(), |(_, rest)| format!("[]{rest}")))
-        .collect();
-    ASKED.with_borrow_mut(|known| {
-        let next = known.len();
-        let key = known.entry(place).or_insert_with(|| Key { place: next, ..Key::default() });
-        if let Some((needed, rule)) = asked {
-            key.needed = needed;
-            // A rule that speaks of the file at hand is told by its first form.
-            key.rule.get_or_insert_with(|| rule.to_owned());
-        }
-    });
-}
 
 /// Has every table, so that every key of each is asked for; whether its values are right does not matter.
 const SAMPLE: &str = r#"
@@ -67,36 +38,27 @@ items = [{}]
 adaptive = { procedure = "quest-plus" }
 "#;
 
-fn keys() -> BTreeMap<String, Key> {
-    ASKED.with_borrow_mut(BTreeMap::clear);
+/// What is asked for; `pairs` is what `items` used to be called, and `[conditions]` holds names.
+fn asked() -> Asked {
+    let reading = Reading::noting();
     for kind in TrialKind::all() {
-        StudyDefinition::parse("sample.toml", &SAMPLE.replace("KIND", kind.name())).unwrap_err();
+        read_into(&reading, "sample.toml", &SAMPLE.replace("KIND", kind.name()));
     }
-    // `pairs` is what `items` used to be called, and `[conditions]` holds names.
-    ASKED.with_borrow(|asked| {
-        asked
-            .iter()
-            .filter(|(path, _)| !path.contains("pairs") && *path != "conditions.files")
-            .map(|(path, key)| (path.replace("conditions.files.", "conditions.NAME."), key.clone()))
-            .collect()
-    })
+    let keys = reading.asked().keys.into_iter();
+    let keys = keys.filter(|(path, _)| !path.contains("pairs") && path != "conditions.files");
+    Asked {
+        keys: keys.map(|(path, key)| (path.replace("conditions.files.", "conditions.NAME."), key)).collect(),
+    }
 }
 
-fn page(keys: &BTreeMap<String, Key>) -> String {
-    let mut keys: Vec<_> = keys.iter().collect();
-    keys.sort_by_key(|(_, key)| key.place);
-    let line = |(path, key): &(&String, &Key)| {
-        let needed = if key.needed { "yes" } else { "" };
-        let rule = key.rule.as_deref().unwrap_or("a table, or as its keys below").replace('|', "\\|");
-        format!("| `{path}` | {needed} | {rule} |")
-    };
+fn page() -> String {
     format!(
         "# Study files\n\n\
          Made of what their parser asks for: `KELIR_BLESS=1 cargo test -p kelir-study reference` writes this page, and a test compares it.\n\
          `stimuli/studies/README.md` says what each key means; this page says what each may be. `[]` stands for every entry of a list. A key that\n\
          is not listed is refused, but for a technique's knobs under `conditions.NAME`. A key below a table is needed where its table is there.\n\n\
          | key | needed | must be |\n|---|---|---|\n{}\n",
-        keys.iter().map(line).collect::<Vec<_>>().join("\n")
+        asked().rows()
     )
 }
 
@@ -106,7 +68,7 @@ fn root() -> PathBuf {
 
 #[test]
 fn the_page_lists_every_key_that_the_parser_asks_for() {
-    let page = page(&keys());
+    let page = page();
     let path = root().join("docs/reference/study-file.md");
     if std::env::var_os("KELIR_BLESS").is_some() {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -144,7 +106,8 @@ fn explained(guide: &str) -> BTreeSet<String> {
 #[test]
 fn the_guide_names_every_key_and_no_other() {
     let guide = std::fs::read_to_string(root().join("stimuli/studies/README.md")).unwrap();
-    let keys: BTreeSet<String> = keys()
+    let keys: BTreeSet<String> = asked()
+        .keys
         .keys()
         .map(|path| path.rsplit('.').next().unwrap().trim_end_matches("[]").to_owned())
         .collect();

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use kelir_study::Problem;
+use kelir_study::{Problem, Problems};
 use serde_json::{Value, json};
 
 use crate::BadInput;
@@ -24,10 +24,10 @@ impl Checked {
 
     /// A file that is good; `details` says what it is, for people and for programs. `warnings` are what may be a mistake all the same.
     pub fn good(&mut self, file: &Path, details: &str, about: Value, warnings: &[Problem]) -> Result<()> {
-        let told: Vec<Value> = warnings.iter().map(problem_json).collect();
         let file = file.display().to_string();
-        self.files
-            .push(json!({ "file": file, "good": true, "about": about, "problems": [], "warnings": told }));
+        self.files.push(
+            json!({ "file": file, "good": true, "about": about, "problems": [], "warnings": warnings }),
+        );
         if self.json {
             return Ok(());
         }
@@ -36,16 +36,20 @@ impl Checked {
         warnings.iter().try_for_each(|warning| print(&format!("warning: {warning}")))
     }
 
-    /// A file that is wrong: as text, and problem by problem.
-    pub fn wrong(&mut self, file: &Path, text: String, problems: Vec<Value>) {
-        self.files.push(json!({ "file": file.display().to_string(), "good": false, "problems": problems }));
-        self.problems.push(text);
+    /// A file that is wrong.
+    pub fn wrong(&mut self, file: &Path, problems: &Problems) {
+        self.add(file, problems, problems.to_string());
     }
 
     /// A file that could not be read at all.
     pub fn unreadable(&mut self, file: &Path, rule: String) {
-        let problem = json!({ "file": file.display().to_string(), "field": "", "value": null, "rule": rule });
-        self.wrong(file, rule, vec![problem]);
+        let problem = Problem::new(file.display().to_string(), "", None, rule.clone());
+        self.add(file, &[problem], rule);
+    }
+
+    fn add(&mut self, file: &Path, problems: &[Problem], text: String) {
+        self.files.push(json!({ "file": file.display().to_string(), "good": false, "problems": problems }));
+        self.problems.push(text);
     }
 
     /// Prints what is left to print.
@@ -55,9 +59,4 @@ impl Checked {
         }
         if self.problems.is_empty() { Ok(()) } else { Err(BadInput(self.problems.join("\n")).into()) }
     }
-}
-
-/// A problem for programs.
-pub fn problem_json(problem: &Problem) -> Value {
-    json!({ "file": problem.file, "field": problem.field, "value": problem.value, "rule": problem.rule })
 }

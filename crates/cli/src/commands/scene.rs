@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use kelir_house::shipped::{self, SceneRefused, Shipped};
-use kelir_scene::{Problem, Scene};
+use kelir_scene::Scene;
 use serde::Serialize;
 use serde_json::json;
 
@@ -49,8 +49,7 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
             }
             Err(SceneRefused::Unknown(rule)) => checked.unreadable(file, rule),
             Err(SceneRefused::Wrong(errors)) => {
-                let fields = |p: &Problem| json!({ "file": p.file, "field": p.field, "value": p.value, "rule": p.rule });
-                checked.wrong(file, errors.to_string(), errors.problems().iter().map(fields).collect());
+                checked.wrong(file, &errors);
             }
         }
     }

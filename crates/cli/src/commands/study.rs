@@ -10,7 +10,7 @@ use kelir_house::{HEAVY_BYTES, Library, SLOW_BITS_PER_S, StudyFileError, Weight,
 use kelir_study::Problem;
 use serde_json::json;
 
-use super::checked::{Checked, problem_json};
+use super::checked::Checked;
 use super::stored::{block_on, results_error};
 use crate::bad_input;
 use crate::output::{Format, Printed, csv, print, print_json, table};
@@ -184,15 +184,15 @@ fn heavy(file: &str, totals: &[Total]) -> Vec<Problem> {
             ),
             false => ("", ""),
         };
-        Problem {
-            file: file.to_owned(),
-            field: if is_one_of_many { "display.sizes" } else { "size" }.to_owned(),
-            value: Some(format!("[{width}, {height}]")),
-            rule: format!(
+        Problem::new(
+            file,
+            if is_one_of_many { "display.sizes" } else { "size" },
+            Some(format!("[{width}, {height}]")),
+            format!(
                 "a participant {whose}downloads {weight}, which takes a slow line (1.6 Mbit/s) {seconds:.0} s; up to {bound} nothing is said. Pixels \
                  are bytes: show fewer items, shorter films or fewer frames a second{otherwise}"
             ),
-        }
+        )
     };
     totals.iter().filter(|total| total.bytes > HEAVY_BYTES).map(warning).collect()
 }
@@ -253,7 +253,7 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
                 }
             }
             Err(StudyFileError::Invalid(errors)) => {
-                checked.wrong(file, errors.to_string(), errors.0.iter().map(problem_json).collect());
+                checked.wrong(file, &errors);
             }
             Err(error) => checked.unreadable(file, error.to_string()),
         }

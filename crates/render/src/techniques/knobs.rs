@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::{Bound, RangeBounds};
 
-use kelir_scene::{did_you_mean, list};
+use kelir_reader::{did_you_mean, list};
 use serde::Serialize;
 use serde_json::{Map, Value};
 

@@ -2,8 +2,9 @@
 
 use std::collections::HashSet;
 
+use kelir_reader::{Node, did_you_mean, list};
+
 use crate::limits;
-use crate::read::{Node, did_you_mean, list};
 
 /// One part as the manifest has it, in drawing order.
 #[derive(Clone, Debug, PartialEq)]

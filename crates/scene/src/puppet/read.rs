@@ -1,6 +1,7 @@
 //! Reads one `[[puppets]]` entry and the files it names.
 
 use glam::DVec3;
+use kelir_reader::{Node, did_you_mean, list};
 
 use super::bitmap::Bitmap;
 use super::figure::{Figure, Pose};
@@ -10,7 +11,6 @@ use super::svg::Svg;
 use crate::fields::{length, point};
 use crate::limits;
 use crate::load::Loader;
-use crate::read::{Node, Source, did_you_mean, list};
 use crate::staging::{Puppet, Setting};
 
 /// A puppet as the file has it, with what later messages need.
@@ -150,15 +150,15 @@ fn open(node: &Node, from: &str, loader: &Loader) -> Option<Art> {
     let (path, bytes) = loader.read(from, node, limits::MANIFEST_BYTES)?;
     let Ok(text) = std::str::from_utf8(&bytes) else { return node.refuse("is not UTF-8 text") };
     let label = loader.label(&path);
-    let source = Source::new(&label, text, loader.problems);
-    let table = toml::de::DeValue::Table(source.parse()?.into_inner());
-    let manifest = Manifest::read(&source.root(&table))?;
-    let ids: Vec<String> = manifest.parts.iter().map(|p| p.id.clone()).collect();
-    let drawing = open_image(&manifest.image, &path, &ids, loader)?;
-    if matches!(drawing, Drawing::Bitmap(_)) && !ids.is_empty() {
-        return manifest.image.refuse("a PNG has no groups: parts need an SVG");
-    }
-    Some(Art { drawing, parts: manifest.parts })
+    loader.reading.source(&label, text).read(|root| {
+        let manifest = Manifest::read(root)?;
+        let ids: Vec<String> = manifest.parts.iter().map(|p| p.id.clone()).collect();
+        let drawing = open_image(&manifest.image, &path, &ids, loader)?;
+        if matches!(drawing, Drawing::Bitmap(_)) && !ids.is_empty() {
+            return manifest.image.refuse("a PNG has no groups: parts need an SVG");
+        }
+        Some(Art { drawing, parts: manifest.parts })
+    })
 }
 
 fn open_image(node: &Node, from: &str, parts: &[String], loader: &Loader) -> Option<Drawing> {

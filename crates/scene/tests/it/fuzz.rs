@@ -111,8 +111,8 @@ fn check_plane(plane: &Plane, lamp_z_m: f64) -> Result<(), TestCaseError> {
 pub fn read(toml: &str, files: &Files) -> Result<bool, TestCaseError> {
     match parse(toml, files) {
         Err(errors) => {
-            prop_assert!(!errors.problems().is_empty() && !errors.to_string().is_empty());
-            for problem in errors.problems() {
+            prop_assert!(!errors.is_empty() && !errors.to_string().is_empty());
+            for problem in errors.iter() {
                 prop_assert!(
                     !problem.to_string().contains(char::is_control),
                     "one line a problem: {problem:?}"

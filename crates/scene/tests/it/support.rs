@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use kelir_scene::{Mask, Scene, SceneErrors};
+use kelir_scene::{Mask, Problems, Scene};
 
 pub type Files = BTreeMap<String, Vec<u8>>;
 
@@ -80,7 +80,7 @@ pub fn png(width: u32, height: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<
     bytes.into_inner()
 }
 
-pub fn parse(toml: &str, files: &Files) -> Result<Scene, SceneErrors> {
+pub fn parse(toml: &str, files: &Files) -> Result<Scene, Problems> {
     Scene::parse("scenes/test.toml", toml, files)
 }
 

@@ -75,9 +75,9 @@ fn older_studies_keep_their_hashes_and_one_size_is_one_study_however_written() {
 #[test]
 fn what_is_no_list_of_sizes_is_refused_by_name() {
     for (size, field) in [
-        ("", "size: missing"),
+        ("", "size: is missing"),
         ("size = [4000, 333]", "size = [4000, 333]"),
-        ("[display]\nfit = \"native\"", "size: missing"),
+        ("[display]\nfit = \"native\"", "size: is missing"),
         ("[display]\nsizes = []", "display.sizes = []"),
         ("[display]\nsizes = [[592, 333], [592, 333]]", "display.sizes"),
         ("[display]\nsizes = [[1110, 624], [592, 333]]", "display.sizes"),
@@ -85,7 +85,7 @@ fn what_is_no_list_of_sizes_is_refused_by_name() {
         ("[display]\nsizes = [[592, 333], [5920, 3330]]", "display.sizes"),
         ("size = [600, 333]\n[display]\nsizes = [[592, 333]]", "size = [600, 333]: must be the first"),
         ("size = [64, 36]\n[display]\nfit = \"stretch\"", "display.fit = \"stretch\""),
-        ("size = [64, 36]\n[display]\nsize = 1", "display.size = 1: unknown key"),
+        ("size = [64, 36]\n[display]\nsize = 1", "display.size = 1: is not a known key"),
         ("size = [64, 36]\ndisplay = 1", "display = 1: must be a table"),
     ] {
         let error = read_with(size, "\"a.png\"").unwrap_err();

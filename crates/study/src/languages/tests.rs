@@ -44,7 +44,7 @@ fn read(source: &str) -> StudyDefinition {
 
 fn problems(source: &str) -> Vec<String> {
     let errors = StudyDefinition::parse("shadows.toml", source).unwrap_err();
-    errors.0.iter().map(|problem| format!("{}: {}", problem.field, problem.rule)).collect()
+    errors.iter().map(|problem| format!("{}: {}", problem.field, problem.rule)).collect()
 }
 
 #[test]
@@ -91,9 +91,9 @@ fn every_problem_of_a_translation_is_named() {
         GERMAN.replace("consent = \"C\"\n", "").replace("title = \"Schatten\"\n", "titel = \"Schatten\"\n");
     let found = problems(&format!("{STUDY}{missing}"));
     assert_eq!(found.len(), 3, "{found:?}");
-    assert!(found.iter().any(|p| p.starts_with("translations.de.title: missing")), "{found:?}");
-    assert!(found.iter().any(|p| p.starts_with("translations.de.texts.consent: missing")), "{found:?}");
-    assert!(found.iter().any(|p| p.starts_with("translations.de.titel: unknown key")), "{found:?}");
+    assert!(found.iter().any(|p| p.starts_with("translations.de.title: is missing")), "{found:?}");
+    assert!(found.iter().any(|p| p.starts_with("translations.de.texts.consent: is missing")), "{found:?}");
+    assert!(found.iter().any(|p| p.starts_with("translations.de.titel: is not a known key")), "{found:?}");
     let own = problems(&format!("language = \"de\"\n{STUDY}{GERMAN}"));
     assert_eq!(
         own,

@@ -2,40 +2,38 @@
 
 use crate::conduct::SessionRules;
 use crate::definition::{CREDITING_PARAMS, Completion, PANEL_PARAMS, StudyDefinition};
-use crate::fields::{Fields, Gatherer, shorten, text};
-use crate::problems::Problem;
+use crate::fields::{SECTION, text};
+use kelir_reader::{Fields, Problem, shorten};
 use std::net::Ipv4Addr;
-use toml::Value;
 
 /// From this edition on an address that breaks a rule is refused. Before, studies ran with it, and go on: it is a warning.
 const STRICT_FROM: u64 = 2;
 
 pub(super) fn read(
-    gatherer: &Gatherer<'_>,
     fields: &mut Fields<'_>,
     session: Option<&SessionRules>,
     edition: Option<u64>,
 ) -> Option<Completion> {
-    let Some(value) = fields.raw("completion") else { return Some(Completion::default()) };
-    let mut fields = Fields::of(gatherer, "completion".to_owned(), value)?;
-    let code = fields.get("code", "a code of 1 to 64 letters, digits, - and _", |v| {
+    let Some(node) = fields.given("completion", SECTION) else { return Some(Completion::default()) };
+    let mut fields = node.table()?;
+    let code = fields.may("code", "a code of 1 to 64 letters, digits, - and _", |v| {
         text(v, 64).filter(|s| s.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_'))
     });
     let redirect =
-        fields.get("redirect", "an https:// address of at most 2000 characters, without blanks", |v| {
+        fields.may("redirect", "an https:// address of at most 2000 characters, without blanks", |v| {
             text(v, 2000).filter(|s| {
                 s.starts_with("https://") && !s.contains(|c: char| c.is_whitespace() || c.is_control())
             })
         });
     let completion = Completion { code, redirect };
     if edition.is_some_and(|edition| edition >= STRICT_FROM)
-        && let (Some(address), Some(session)) = (&completion.redirect, session)
+        && let Some(session) = session
     {
         for rule in broken(&completion, session) {
-            fields.report("redirect", Some(&Value::String(address.clone())), rule);
+            fields.reject("redirect", &rule);
         }
     }
-    fields.finish();
+    fields.done();
     Some(completion)
 }
 
@@ -45,13 +43,8 @@ impl StudyDefinition {
         if u64::from(self.edition) >= STRICT_FROM {
             return Vec::new();
         }
-        let value = self.completion.redirect.clone().map(|address| shorten(&Value::String(address)));
-        let warning = |rule| Problem {
-            file: file.to_owned(),
-            field: "completion.redirect".to_owned(),
-            value: value.clone(),
-            rule,
-        };
+        let value = self.completion.redirect.as_ref().and_then(|address| shorten(&format!("{address:?}")));
+        let warning = |rule| Problem::new(file, "completion.redirect", value.clone(), rule);
         broken(&self.completion, &self.session).into_iter().map(warning).collect()
     }
 }

@@ -47,10 +47,15 @@ target = "pa"
 pairs = [{ id = "fig", scene = "../scenes/a.toml" }]
 "#;
 
+/// A problem as it is told, but for where: each case would count its lines otherwise.
+fn without_place(problem: &Problem) -> String {
+    Problem { place: None, ..problem.clone() }.to_string()
+}
+
 fn problems(source: &str) -> Vec<String> {
     match StudyDefinition::parse("studies/two.toml", source) {
         Ok(_) => Vec::new(),
-        Err(errors) => errors.0.iter().map(Problem::to_string).collect(),
+        Err(errors) => errors.iter().map(without_place).collect(),
     }
 }
 
@@ -95,13 +100,35 @@ fn every_problem_is_reported_with_field_value_and_rule() {
     for expected in [
         "studies/two.toml: seed = -7: must be an integer from 0 to 2^53",
         "studies/two.toml: size = [9000, 333]: must be [width, height] in pixels",
-        "studies/two.toml: surrond = 0.2: unknown key",
+        "studies/two.toml: surrond = 0.2: is not a known key",
         "studies/two.toml: conditions.mc.spp = nan: must be a finite number",
         "studies/two.toml: blocks[0].pairs[1].id = \"a\": must be unique",
         "studies/two.toml: blocks[0].target = \"photo\": must be one of",
     ] {
         assert!(found.iter().any(|p| p.starts_with(expected)), "no {expected:?} in {found:#?}");
     }
+}
+
+#[test]
+fn problems_say_where_and_show_values_as_they_are_written() {
+    let bad = GOOD
+        .replace("seed = 7", "seed = 0x1_0000_0000_0000_0000\nsurrond = 0.20")
+        .replace("[592, 333]", "[ 9_000, 333 ] # wide")
+        .replace("{ id = \"b\",", "{ id = 'a',")
+        .replace("\"pa\", \"mc\"]", "\"pa\", \"mc2\"]");
+    let told: Vec<String> =
+        StudyDefinition::parse("two.toml", &bad).unwrap_err().iter().map(Problem::to_string).collect();
+    for expected in [
+        "two.toml:4:8: seed = 0x1_0000_0000_0000_0000: must be an integer from 0 to 2^53",
+        "two.toml:6:8: size = [ 9_000, 333 ]: must be [width, height] in pixels, width 16 to 3840, height 16 to 2160; it may be missing where \
+         display.sizes is there",
+        "two.toml:35:60: blocks[0].pairs[1].id = 'a': must be unique in the study",
+        "two.toml:33:21: blocks[0].conditions[1] = \"mc2\": must be defined under [conditions]",
+    ] {
+        assert!(told.iter().any(|p| p == expected), "no {expected:?} in {told:#?}");
+    }
+    let unknown = "two.toml:5:11: surrond = 0.20: is not a known key (did you mean surround?); known are";
+    assert!(told.iter().any(|p| p.starts_with(unknown)), "{told:#?}");
 }
 
 #[test]
@@ -134,7 +161,7 @@ fn each_rule_refuses_its_breach() {
         ("../scenes/b.toml", "/scenes/b.toml", "blocks[0].pairs[1].scene"),
         ("{ id = \"b\", scene = \"../scenes/b.toml\" }", "{ id = \"b\" }", "blocks[0].pairs[1].scene"),
         ("{ id = \"b\", scene = \"../scenes/b.toml\" }", "7", "blocks[0].pairs[1]"),
-        ("title = \"Two blocks\"", "title = ", "line 2"),
+        ("title = \"Two blocks\"", "title = ", "line 2, column 9"),
     ];
     assert_eq!(problems(GOOD), Vec::<String>::new());
     for (from, to, field) in cases {
@@ -243,12 +270,12 @@ fn each_rule_of_levels_refuses_its_breach() {
     let cases = [
         ("level = 2.5", "level = nan", "blocks[0].pairs[1].level"),
         ("level = 2.5", "level = \"much\"", "blocks[0].pairs[1].level"),
-        (", level = 2.5", "", "blocks[0].pairs[1].level: missing"),
+        (", level = 2.5", "", "blocks[0].pairs[1].level: is missing"),
         ("level = 2.5", "level = 1.0", "blocks[0].pairs: must have at least three different levels"),
         ("function = \"weibull\"", "function = \"line\"", "blocks[0].psychometric.function"),
-        ("function = \"weibull\"", "", "blocks[0].psychometric.function: missing"),
+        ("function = \"weibull\"", "", "blocks[0].psychometric.function: is missing"),
         ("\"falling\"", "\"down\"", "blocks[0].psychometric.direction"),
-        ("label = \"triangles\"", "", "blocks[0].psychometric.label: missing"),
+        ("label = \"triangles\"", "", "blocks[0].psychometric.label: is missing"),
         ("unit = \"log10\"", "unit = 3", "blocks[0].psychometric.unit"),
         ("lapse = 0.02", "lapse = 0.5", "blocks[0].psychometric.lapse"),
         ("lapse = 0.02", "lapse = \"some\"", "blocks[0].psychometric.lapse"),
@@ -317,20 +344,25 @@ fn each_rule_of_kinds_and_procedures_refuses_its_breach() {
             STAIRCASE,
             "first_ms = 250",
             "frist_ms = 250",
-            "blocks[0].trial_settings.frist_ms = 250: unknown key",
+            "blocks[0].trial_settings.frist_ms = 250: is not a known key",
         ),
         (STAIRCASE, "trial = \"two-interval\"", "trial = \"two-alternative\"", "blocks[0].trial_settings"),
         (STAIRCASE, "\"staircase\"", "\"ladder\"", "blocks[0].adaptive.procedure = \"ladder\""),
         (STAIRCASE, "trials = 40", "trials = 0", "blocks[0].adaptive.trials = 0"),
-        (STAIRCASE, "reversals = 8\n", "", "blocks[0].adaptive.reversals: missing"),
+        (STAIRCASE, "reversals = 8\n", "", "blocks[0].adaptive.reversals: is missing"),
         (STAIRCASE, "down = 2", "down = 1", "blocks[0].adaptive.down = 1"),
         (STAIRCASE, "down = 2", "down = 2\nshare = 0.75", "blocks[0].adaptive.share: leave out"),
         (STAIRCASE, "down = 2", "share = 0.5", "blocks[0].adaptive.share = 0.5"),
         (STAIRCASE, "start = 1.0", "start = 1.5", "blocks[0].adaptive: start"),
         (STAIRCASE, "steps = [2, 1]", "steps = [0]", "blocks[0].adaptive.steps"),
         (QUEST, "precise_enough = 0.25", "precise_enough = 0", "blocks[0].adaptive.precise_enough = 0"),
-        (QUEST, "trials = 30", "", "blocks[0].adaptive.trials: missing"),
-        (QUEST, "trials = 30", "trials = 30\nreversals = 8", "blocks[0].adaptive.reversals = 8: unknown key"),
+        (QUEST, "trials = 30", "", "blocks[0].adaptive.trials: is missing"),
+        (
+            QUEST,
+            "trials = 30",
+            "trials = 30\nreversals = 8",
+            "blocks[0].adaptive.reversals = 8: is not a known key",
+        ),
     ];
     for (settings, from, to, named) in cases {
         let good = adaptive(settings);

@@ -1,10 +1,9 @@
 //! A design file: a study, a supposed truth about its observers, and what is to be tried.
 
 use crate::definition::StudyDefinition;
-use crate::fields::{Fields, Gatherer, integer, number, text};
-use crate::problems::StudyErrors;
+use crate::fields::{SECTION, integer, number, text};
+use kelir_reader::{Fields, Node, Problems, Reading};
 use std::collections::{BTreeMap, BTreeSet};
-use toml::{Table, Value};
 
 /// Most participants of one simulated study.
 const MOST_PARTICIPANTS: i64 = 100_000;
@@ -15,7 +14,7 @@ const MOST_SIZES: usize = 50;
 #[derive(Clone, Debug)]
 pub struct DesignFile {
     file: String,
-    table: Table,
+    text: String,
     /// The study file, relative to the design file.
     pub study: String,
 }
@@ -113,131 +112,117 @@ impl DesignFile {
     ///
     /// # Errors
     /// It is no TOML, or names no study.
-    pub fn parse(file: &str, source: &str) -> Result<DesignFile, StudyErrors> {
-        let table = crate::parse::table(file, source)?;
-        let gatherer = Gatherer::new(file);
-        let mut fields = Fields::new(&gatherer, "", &table);
-        let study = fields.need("study", "a study file relative to this one, ending in .toml", |v| {
-            text(v, 400).filter(|s| s.ends_with(".toml"))
+    pub fn parse(file: &str, source: &str) -> Result<DesignFile, Problems> {
+        let reading = Reading::default();
+        let study = reading.source(file, source).read(|root| {
+            let mut fields = root.table()?;
+            // What the other keys may be depends on the study.
+            let rule = "a study file relative to this one, ending in .toml";
+            fields.must("study", rule, |v| text(v, 400).filter(|s| s.ends_with(".toml")))
         });
-        match study {
-            Some(study) => Ok(DesignFile { file: file.to_owned(), table, study }),
-            None => Err(StudyErrors(gatherer.into_problems())),
-        }
+        let study = reading.end(study)?;
+        Ok(DesignFile { file: file.to_owned(), text: source.to_owned(), study })
     }
 
     /// The design of `study`, which the caller has read from the file named.
     ///
     /// # Errors
     /// Every problem of the design file, in one list.
-    pub fn design(&self, study: StudyDefinition) -> Result<Design, StudyErrors> {
-        let gatherer = Gatherer::new(&self.file);
-        let design = self.read(&gatherer, study);
-        match (design, gatherer.into_problems()) {
-            (Some(design), problems) if problems.is_empty() => Ok(design),
-            (_, problems) => Err(StudyErrors(problems)),
-        }
-    }
-
-    fn read(&self, gatherer: &Gatherer<'_>, study: StudyDefinition) -> Option<Design> {
-        let mut fields = Fields::new(gatherer, "", &self.table);
-        fields.raw("study");
-        let sizes = format!(
-            "a list of 1 to {MOST_SIZES} different numbers from 2 to {MOST_PARTICIPANTS}, or a table with from, to and step that gives \
-             one"
-        );
-        let participants = fields.need("participants", &sizes, participants);
-        let simulations =
-            fields.need("simulations", "a count from 20 to 1000000", |v| integer(v, 20, 1_000_000));
-        let seed = fields.need("seed", "an integer from 0 to 2^53", |v| integer(v, 0, 1 << 53));
-        let share = |v: &Value| number(v, 0.0, 1.0).filter(|x| *x > 0.0 && *x < 1.0);
-        let alpha = fields.get("alpha", "a number above 0 and below 1", share);
-        let power = fields.get("power", "a number above 0 and below 1", share);
-        let observers = observers(gatherer, &mut fields);
-        let truths = truths(gatherer, &mut fields, &study);
-        fields.finish();
-        Some(Design {
-            study,
-            participants: participants?,
-            simulations: simulations?,
-            seed: seed?,
-            alpha: alpha.unwrap_or(0.05),
-            power: power.unwrap_or(0.8),
-            truths: truths?,
-            observers: observers?,
-        })
+    pub fn design(&self, study: StudyDefinition) -> Result<Design, Problems> {
+        let reading = Reading::default();
+        let design = reading.source(&self.file, &self.text).read(|root| read(root, study));
+        reading.end(design)
     }
 }
 
-fn participants(value: &Value) -> Option<Vec<u32>> {
-    let size = |v: &Value| integer(v, 2, MOST_PARTICIPANTS).map(|n| n as u32);
-    let sizes: BTreeSet<u32> = match value {
-        Value::Array(items) => {
-            let sizes: BTreeSet<u32> = items.iter().map(size).collect::<Option<_>>()?;
-            (sizes.len() == items.len()).then_some(sizes)?
-        }
-        Value::Table(table) if table.len() == 3 => {
-            let (from, to) = (size(table.get("from")?)?, size(table.get("to")?)?);
-            let step = integer(table.get("step")?, 1, MOST_PARTICIPANTS)?;
-            (from..=to).step_by(step as usize).take(MOST_SIZES + 1).collect()
-        }
-        _ => return None,
+fn read(root: &Node, study: StudyDefinition) -> Option<Design> {
+    let mut fields = root.table()?;
+    fields.get("study");
+    let sizes = format!(
+        "a list of 1 to {MOST_SIZES} different numbers from 2 to {MOST_PARTICIPANTS}, or a table with from, to and step that gives \
+         one"
+    );
+    let participants = fields.must("participants", &sizes, participants);
+    let simulations = fields.must("simulations", "a count from 20 to 1000000", |v| integer(v, 20, 1_000_000));
+    let seed = fields.must("seed", "an integer from 0 to 2^53", |v| integer(v, 0, 1 << 53));
+    let share = |v: &Node| number(v, 0.0, 1.0).filter(|x| *x > 0.0 && *x < 1.0);
+    let alpha = fields.may("alpha", "a number above 0 and below 1", share);
+    let power = fields.may("power", "a number above 0 and below 1", share);
+    let observers = observers(&mut fields);
+    let truths = truths(&mut fields, &study);
+    fields.done();
+    Some(Design {
+        study,
+        participants: participants?,
+        simulations: simulations?,
+        seed: seed?,
+        alpha: alpha.unwrap_or(0.05),
+        power: power.unwrap_or(0.8),
+        truths: truths?,
+        observers: observers?,
+    })
+}
+
+fn participants(value: &Node) -> Option<Vec<u32>> {
+    let size = |v: &Node| integer(v, 2, MOST_PARTICIPANTS).map(|n| n as u32);
+    let sizes: BTreeSet<u32> = if let Some(items) = value.as_array() {
+        let sizes: BTreeSet<u32> = items.iter().map(size).collect::<Option<_>>()?;
+        (sizes.len() == items.len()).then_some(sizes)?
+    } else if value.as_entries()?.len() == 3 {
+        let (from, to) = (size(&value.get("from")?)?, size(&value.get("to")?)?);
+        let step = integer(&value.get("step")?, 1, MOST_PARTICIPANTS)?;
+        (from..=to).step_by(step as usize).take(MOST_SIZES + 1).collect()
+    } else {
+        return None;
     };
     (1..=MOST_SIZES).contains(&sizes.len()).then(|| sizes.into_iter().collect())
 }
 
-fn observers(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>) -> Option<Observers> {
-    let Some(value) = fields.raw("observers") else { return Some(Observers::default()) };
-    let mut fields = Fields::of(gatherer, "observers".to_owned(), value)?;
+fn observers(fields: &mut Fields<'_>) -> Option<Observers> {
+    let Some(node) = fields.given("observers", SECTION) else { return Some(Observers::default()) };
+    let mut fields = node.table()?;
     let usual = Observers::default();
-    let mut share = |key| fields.get(key, "a share from 0 to 1", |v| number(v, 0.0, 1.0)).unwrap_or(0.0);
+    let mut share = |key| fields.may(key, "a share from 0 to 1", |v| number(v, 0.0, 1.0)).unwrap_or(0.0);
     let (dropout, careless, catch_errors) = (share("dropout"), share("careless"), share("catch_errors"));
     let mut time = |key, default| {
-        fields.get(key, "milliseconds from 1 to 600000", |v| number(v, 1.0, 600_000.0)).unwrap_or(default)
+        fields.may(key, "milliseconds from 1 to 600000", |v| number(v, 1.0, 600_000.0)).unwrap_or(default)
     };
     let (rt_median_ms, careless_rt_ms) =
         (time("rt_median_ms", usual.rt_median_ms), time("careless_rt_ms", usual.careless_rt_ms));
-    fields.finish();
+    fields.done();
     Some(Observers { dropout, careless, catch_errors, rt_median_ms, careless_rt_ms })
 }
 
-fn truths(
-    gatherer: &Gatherer<'_>,
-    fields: &mut Fields<'_>,
-    study: &StudyDefinition,
-) -> Option<Vec<Option<Supposed>>> {
+fn truths(fields: &mut Fields<'_>, study: &StudyDefinition) -> Option<Vec<Option<Supposed>>> {
     let mut of_block: Vec<Option<Supposed>> = vec![None; study.blocks.len()];
     let mut rest = None;
     let mut good = true;
     for (entry, mut fields) in fields.tables("truth").into_iter().enumerate() {
         let blocks =
-            fields.get("blocks", "a list of ids of the study's blocks that are no catch blocks", |v| {
+            fields.may("blocks", "a list of ids of the study's blocks that are no catch blocks", |v| {
                 let items = v.as_array().filter(|items| !items.is_empty())?;
                 items.iter().map(|v| analysed(study, v.as_str()?)).collect::<Option<Vec<usize>>>()
             });
-        let named = fields.raw("blocks").is_some();
-        let supposed = truth(gatherer, &mut fields, entry);
+        let named = fields.has("blocks");
+        let supposed = truth(&mut fields, entry);
         match (blocks, named, supposed) {
             (Some(blocks), _, Some(supposed)) => {
-                for block in blocks {
+                let items = fields.get("blocks").and_then(|node| node.as_array()).unwrap_or_default();
+                for (block, item) in blocks.into_iter().zip(items) {
                     if of_block[block].replace(supposed.clone()).is_some() {
-                        let id = Value::String(study.blocks[block].id.clone());
-                        fields.report("blocks", Some(&id), "an earlier [[truth]] names this block already");
+                        item.refuse::<()>("an earlier [[truth]] names this block already");
                     }
                 }
             }
             (None, false, Some(supposed)) => {
                 if rest.replace(supposed).is_some() {
-                    fields.report(
-                        "blocks",
-                        None,
-                        "missing; one [[truth]] alone may stand for all other blocks",
-                    );
+                    let rule = "is missing: one [[truth]] alone may stand for all other blocks";
+                    fields.report("blocks", rule);
                 }
             }
             _ => good = false,
         }
-        fields.finish();
+        fields.done();
     }
     if !good {
         return None;
@@ -248,20 +233,17 @@ fn truths(
         }
         let id = &block.id;
         match supposed {
-            None => fields.report("truth", None, format!("no [[truth]] is of block {id}")),
+            None => fields.report("truth", format!("no [[truth]] is of block {id}")),
             Some(Supposed { truth: Truth::Quality { jod, .. }, .. }) => {
                 for name in block.conditions.iter().filter(|name| !jod.contains_key(*name)) {
-                    fields.report(
-                        "truth",
-                        None,
-                        format!("jod gives no quality for condition {name} of block {id}"),
-                    );
+                    let rule = format!("jod gives no quality for condition {name} of block {id}");
+                    fields.report("truth", rule);
                 }
             }
             Some(Supposed { truth: Truth::Threshold { .. }, .. }) if block.psychometric.is_none() => {
                 let rule =
                     format!("a threshold is of a block with levels and [blocks.psychometric]; {id} has none");
-                fields.report("truth", None, rule);
+                fields.report("truth", rule);
             }
             Some(_) => {}
         }
@@ -274,27 +256,27 @@ fn analysed(study: &StudyDefinition, id: &str) -> Option<usize> {
     study.blocks.iter().position(|block| block.id == id && !block.catch)
 }
 
-fn truth(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>, entry: usize) -> Option<Supposed> {
-    let lapse = fields.get("lapse", "a share from 0 to 1", |v| number(v, 0.0, 1.0)).unwrap_or(0.0);
-    let spread = |v: &Value| number(v, 0.0, 1e9);
+fn truth(fields: &mut Fields<'_>, entry: usize) -> Option<Supposed> {
+    let lapse = fields.may("lapse", "a share from 0 to 1", |v| number(v, 0.0, 1.0)).unwrap_or(0.0);
+    let spread = |v: &Node| number(v, 0.0, 1e9);
     let given: Vec<&str> =
-        ["preference", "jod", "threshold"].into_iter().filter(|key| fields.raw(key).is_some()).collect();
+        ["preference", "jod", "threshold"].into_iter().filter(|key| fields.get(key).is_some()).collect();
     let truth = match given[..] {
         ["preference"] => preference(fields)?,
         ["jod"] => {
-            let jod = fields.raw("jod").and_then(|v| qualities(gatherer, &fields.path_of("jod"), v));
-            let observer_sd = fields.get("observer_sd", "JOD from 0 to 1e9", spread).unwrap_or(0.0);
+            let jod = fields.get("jod").and_then(|v| qualities(&v));
+            let observer_sd = fields.may("observer_sd", "JOD from 0 to 1e9", spread).unwrap_or(0.0);
             Truth::Quality { jod: jod?, observer_sd }
         }
         ["threshold"] => {
-            let threshold = fields.get("threshold", "a level within ±1e12", |v| number(v, -1e12, 1e12));
+            let threshold = fields.may("threshold", "a level within ±1e12", |v| number(v, -1e12, 1e12));
             let width =
-                fields.need("width", "a number above 0 up to 1e9", |v| spread(v).filter(|x| *x > 0.0));
-            let threshold_sd = fields.get("threshold_sd", "levels from 0 to 1e9", spread).unwrap_or(0.0);
+                fields.must("width", "a number above 0 up to 1e9", |v| spread(v).filter(|x| *x > 0.0));
+            let threshold_sd = fields.may("threshold_sd", "levels from 0 to 1e9", spread).unwrap_or(0.0);
             Truth::Threshold { threshold: threshold?, width: width?, threshold_sd }
         }
         _ => {
-            fields.report("preference", None, "give one of preference, jod and threshold (with width)");
+            fields.report("preference", "give one of preference, jod and threshold (with width)");
             return None;
         }
     };
@@ -302,19 +284,19 @@ fn truth(gatherer: &Gatherer<'_>, fields: &mut Fields<'_>, entry: usize) -> Opti
 }
 
 fn preference(fields: &mut Fields<'_>) -> Option<Truth> {
-    let probability = fields.get("preference", "a probability from 0 to 1", |v| number(v, 0.0, 1.0));
-    let icc = fields.get("icc", "a number from 0 to 1", |v| number(v, 0.0, 1.0));
-    let sd = fields.get("sd", "a standard deviation from 0 to 0.5", |v| number(v, 0.0, 0.5));
+    let probability = fields.may("preference", "a probability from 0 to 1", |v| number(v, 0.0, 1.0));
+    let icc = fields.may("icc", "a number from 0 to 1", |v| number(v, 0.0, 1.0));
+    let sd = fields.may("sd", "a standard deviation from 0 to 0.5", |v| number(v, 0.0, 0.5));
     let probability = probability?;
     let most = probability * (1.0 - probability);
     let icc = match (icc, sd) {
         (Some(_), Some(_)) => {
-            fields.report("sd", None, "give icc or sd, not both");
+            fields.report("sd", "give icc or sd, not both");
             return None;
         }
         (None, Some(sd)) if sd * sd > most => {
             let rule = format!("must not exceed √(p(1 − p)) = {:.4}", most.sqrt());
-            fields.report("sd", Some(&Value::Float(sd)), rule);
+            fields.reject("sd", &rule);
             return None;
         }
         (None, Some(sd)) if most > 0.0 => sd * sd / most,
@@ -323,23 +305,12 @@ fn preference(fields: &mut Fields<'_>) -> Option<Truth> {
     Some(Truth::Preference { probability, icc })
 }
 
-fn qualities(gatherer: &Gatherer<'_>, path: &str, value: &Value) -> Option<BTreeMap<String, f64>> {
-    let Some(table) = value.as_table() else {
-        gatherer.report(path, Some(value), "must be a table of condition = JOD");
-        return None;
-    };
-    let mut qualities = BTreeMap::new();
-    for (name, value) in table {
-        match number(value, -100.0, 100.0) {
-            Some(jod) => {
-                qualities.insert(name.clone(), jod);
-            }
-            None => gatherer.report(
-                &format!("{path}.{name}"),
-                Some(value),
-                "must be a number of JOD from -100 to 100",
-            ),
-        }
-    }
-    (qualities.len() == table.len()).then_some(qualities)
+fn qualities(node: &Node) -> Option<BTreeMap<String, f64>> {
+    let table = node.must("a table of condition = JOD", |v| v.as_entries())?;
+    let rule = "a number of JOD from -100 to 100";
+    let read: Vec<_> = table
+        .iter()
+        .map(|(name, v)| Some(((*name).to_owned(), v.must(rule, |v| number(v, -100.0, 100.0))?)))
+        .collect();
+    read.into_iter().collect()
 }

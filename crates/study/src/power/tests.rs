@@ -4,6 +4,7 @@ use super::findings::PER_TRIAL;
 use super::*;
 use crate::answers::blocks;
 use crate::definition::StudyDefinition;
+use kelir_reader::Problem;
 
 /// `blocks` of (conditions, pairs, rest of the block) with rules of screening.
 fn study(screening: &str, blocks: &[(&str, &str, usize, &str)]) -> StudyDefinition {
@@ -220,7 +221,9 @@ fn every_problem_of_a_design_is_named() {
     let problems =
         |text: &str| match DesignFile::parse("d.toml", text).and_then(|file| file.design(study.clone())) {
             Ok(_) => Vec::new(),
-            Err(errors) => errors.0.iter().map(|p| p.to_string()).collect::<Vec<_>>(),
+            Err(errors) => {
+                errors.iter().map(|p| Problem { place: None, ..p.clone() }.to_string()).collect::<Vec<_>>()
+            }
         };
     assert_eq!(problems(good), Vec::<String>::new());
     let icc = match &DesignFile::parse("d.toml", good).unwrap().design(study.clone()).unwrap().truths[0] {
@@ -229,7 +232,7 @@ fn every_problem_of_a_design_is_named() {
     };
     assert!((icc - 0.04 / 0.24).abs() < 1e-15);
     for (from, to, named) in [
-        ("study = \"s.toml\"", "", "study: missing"),
+        ("study = \"s.toml\"", "", "study: is missing"),
         ("[8, 16]", "[8, 8]", "participants = [8, 8]"),
         ("[8, 16]", "[1]", "participants"),
         ("[8, 16]", "{ from = 8, to = 4, step = 1 }", "participants"),
@@ -238,7 +241,7 @@ fn every_problem_of_a_design_is_named() {
         ("seed = 1", "seed = -1", "seed"),
         ("seed = 1", "seed = 1\nalpha = 1.0", "alpha"),
         ("seed = 1", "seed = 1\npower = nan", "power"),
-        ("seed = 1", "seed = 1\nsamples = 3", "samples = 3: unknown key"),
+        ("seed = 1", "seed = 1\nsamples = 3", "samples = 3: is not a known key"),
         ("seed = 1", "seed = 1\nobservers = { dropout = 2 }", "observers.dropout"),
         ("seed = 1", "seed = 1\nobservers = 3", "observers"),
         ("preference = 0.6", "preference = 1.6", "truth[2].preference"),
@@ -251,7 +254,7 @@ fn every_problem_of_a_design_is_named() {
         ("sd = 0.2", "blocks = [\"two\"]", "truth: no [[truth]] is of block one"),
         ("photo = 1.5", "photo = nan", "truth[1].jod.photo"),
         (", photo = 1.5", "", "truth: jod gives no quality for condition photo"),
-        ("width = 1.5", "", "truth[0].width: missing"),
+        ("width = 1.5", "", "truth[0].width: is missing"),
         ("[\"lev\"]", "[\"one\"]", "truth: a threshold is of a block with levels"),
         ("[8, 16]", "[8, 16", "line 3"),
     ] {

@@ -16,8 +16,9 @@ pub use taken::{Arrangement, FrameLog, Geometry, Input, Length, Pixels, Taken};
 pub use two_alternative::{Side, TwoAlternativeAnswer};
 pub use two_interval::{Intervals, StepFrames, StepTimes, TwoIntervalAnswer, Which};
 
-use crate::fields::Fields;
+use crate::fields::SECTION;
 use crate::schema::{FieldError, Record, worded};
+use kelir_reader::Fields;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
@@ -214,21 +215,15 @@ impl TrialKind {
     /// Reads a block's `trial` and `[blocks.trial_settings]`; `None` where something is wrong, which has been reported.
     pub(crate) fn read(block: &mut Fields<'_>) -> Option<TrialKind> {
         let names = TrialKind::all().map(|kind| format!("\"{}\"", kind.name())).join(" or ");
-        let asked = match block.has("trial") {
-            false => Some(TrialKind::default()),
-            true => block.get("trial", &names, |v| {
-                TrialKind::all().into_iter().find(|kind| v.as_str() == Some(kind.name()))
-            }),
-        };
+        let asked = block.defaulted("trial", &names, TrialKind::default(), |v| {
+            TrialKind::all().into_iter().find(|kind| v.as_str() == Some(kind.name()))
+        });
         match asked? {
             TrialKind::TwoInterval(_) => two_interval::read(block).map(TrialKind::TwoInterval),
-            TrialKind::TwoAlternative => {
-                if let Some(settings) = block.raw("trial_settings") {
-                    block.report("trial_settings", Some(settings), "this kind of trial has no settings");
-                    return None;
-                }
-                Some(TrialKind::TwoAlternative)
-            }
+            TrialKind::TwoAlternative => match block.given("trial_settings", SECTION) {
+                Some(settings) => settings.refuse("this kind of trial has no settings"),
+                None => Some(TrialKind::TwoAlternative),
+            },
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use super::choice::ChoiceOfTwo;
 use super::{Role, Taken, TrialName};
-use crate::fields::{Fields, number};
+use crate::fields::{SECTION, number};
 use crate::schema::{Record, worded};
+use kelir_reader::Fields;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
-use toml::Value as Toml;
 use utoipa::ToSchema;
 
 /// How long each step of a two-interval trial is asked to last, in ms. A page rounds each to whole frames of its display.
@@ -98,21 +98,16 @@ pub struct TwoIntervalAnswer {
 /// `[blocks.trial_settings]`; `None` where something is wrong, which has been reported.
 pub(super) fn read(block: &mut Fields<'_>) -> Option<Intervals> {
     let usual = Intervals::default();
-    let Some(mut fields) = block.table("trial_settings") else {
-        return (!block.has("trial_settings")).then_some(usual);
-    };
-    let read = |low: f64, high: f64| move |v: &Toml| number(v, low, high);
-    let mut step = |key, rule, low, high, usual| match fields.has(key) {
-        true => fields.get(key, rule, read(low, high)),
-        false => Some(usual),
-    };
+    let Some(node) = block.given("trial_settings", SECTION) else { return Some(usual) };
+    let mut fields = node.table()?;
+    let mut step = |key, rule, low, high, usual| fields.defaulted(key, rule, usual, |v| number(v, low, high));
     let found = (
         step("fixation_ms", "milliseconds from 0 to 10000", 0.0, 1e4, usual.fixation_ms),
         step("first_ms", "milliseconds from 1 to 60000", 1.0, 6e4, usual.first_ms),
         step("mask_ms", "milliseconds from 0 to 10000", 0.0, 1e4, usual.mask_ms),
         step("second_ms", "milliseconds from 1 to 60000", 1.0, 6e4, usual.second_ms),
     );
-    fields.finish();
+    fields.done();
     let (fixation_ms, first_ms, mask_ms, second_ms) = found;
     Some(Intervals {
         fixation_ms: fixation_ms?,

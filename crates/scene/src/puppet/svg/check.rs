@@ -2,10 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
+use kelir_reader::{did_you_mean, list};
 use resvg::usvg::roxmltree::{Document, Node, NodeId};
 
 use crate::limits;
-use crate::read::{did_you_mean, list};
 
 const SVG: &str = "http://www.w3.org/2000/svg";
 
