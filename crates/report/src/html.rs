@@ -2,7 +2,7 @@
 
 use crate::document::{Cell, Document, Piece, Row, Section, Table};
 
-const STYLE: &str = include_str!("style.css");
+const STYLE: &str = concat!(include_str!("style.css"), include_str!("figures.css"));
 
 /// Writes a document as one self-contained HTML file.
 pub fn html(document: &Document) -> String {
