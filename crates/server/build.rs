@@ -19,7 +19,7 @@ const SOURCES: [&str; 8] = [
     "package.json",
     "participant",
     "shared",
-    "../crates/report/src/figures.css",
+    "../crates/report/src/shared.css",
 ];
 
 /// The two shells that every bundle has.

@@ -45,7 +45,8 @@ const scrolling = (label: string, content: Element) => h("div", { class: "scroll
 
 function laidTable({ caption, columns, rows }: Table, where: string): Node[] {
   const word = (column: number) => (columns[column]?.numeric === true ? null : "word");
-  const cell = (of: Cell, column: number) => (column === 0 ? h("th", { scope: "row" }, ...content(of)) : h("td", { class: word(column) }, ...content(of)));
+  const cell = (of: Cell, column: number) =>
+    column === 0 ? h("th", { scope: "row" }, ...content(of)) : h("td", { class: of.shown === "" ? "none" : word(column), "data-name": of.shown === "" ? null : columns[column]?.name }, ...content(of));
   const line = (row: Row) => (row.kind === "group" ? h("tr", { class: "group" }, h("th", { scope: "rowgroup", colspan: columns.length }, row.content)) : h("tr", {}, ...row.content.map(cell)));
   const table = h(
     "table",
