@@ -1,6 +1,6 @@
 //! A job under way: the one path from a scene to codes and to files, for studies and for the command line.
 
-use kelir_scene::Theatre;
+use kelir_scene::{Masks, Theatre};
 
 use super::{Blob, Job, Output};
 use crate::{Frame, Meter, RenderError, Renderer, Stats, Technique, encode, renderer};
@@ -13,6 +13,7 @@ pub struct Drawing<'j> {
     codes: Vec<u32>,
     /// What `codes` show.
     last: Option<Theatre>,
+    masks: Masks,
 }
 
 /// A frame that was drawn.
@@ -36,7 +37,7 @@ impl<'j> Drawing<'j> {
         job.view.check(&job.scene.still())?;
         let white = job.exposure.white(&job.scene, &job.view, job.time_s);
         let codes = vec![0; job.view.size[0] * job.view.size[1]];
-        Ok(Self { job, renderer, white, codes, last: None })
+        Ok(Self { job, renderer, white, codes, last: None, masks: Masks::default() })
     }
 
     /// The radiance shown as white.
@@ -61,13 +62,12 @@ impl<'j> Drawing<'j> {
 
     /// What frame `index` shows.
     pub(super) fn theatre(&mut self, index: usize) -> Theatre {
-        let Job { scene, output, time_s, .. } = &mut *self.job;
+        let Job { scene, output, time_s, .. } = &*self.job;
         match (output, scene.timeline(), time_s) {
             (Output::Animation, Some(timeline), _) => {
-                let time_s = timeline.frame_time_s(index);
-                scene.theatre_at(time_s)
+                scene.theatre_at(timeline.frame_time_s(index), &mut self.masks)
             }
-            (_, _, Some(time_s)) => scene.theatre_at(*time_s),
+            (_, _, Some(time_s)) => scene.theatre_at(*time_s, &mut self.masks),
             _ => scene.still(),
         }
     }
