@@ -5,7 +5,7 @@ COPY --from=node:20-bookworm-slim /usr/local/lib/node_modules /usr/local/lib/nod
 RUN ln -sf ../lib/node_modules/npm/bin/npm-cli.js /usr/local/bin/npm
 WORKDIR /src
 COPY . .
-RUN cargo build --release --workspace --locked
+RUN cargo build --release --package kelir --locked
 
 FROM debian:bookworm-slim
 RUN useradd --system --uid 10001 --create-home kelir && mkdir /data && chown kelir /data

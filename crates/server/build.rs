@@ -47,7 +47,7 @@ fn run() -> Result<(), String> {
     call("node", &[&web.join("build.mjs"), &out], &web, "building the web pages")
 }
 
-/// `npm ci` when `web/node_modules` is not what the lock file says.
+/// `npm ci` when `web/node_modules` is not what the lock file says. Linters and browsers' drivers come only to who has them already.
 fn install_packages(web: &Path) -> Result<(), String> {
     let lock = web.join("package-lock.json");
     let failed = |error: io::Error| format!("{}: {error}", lock.display());
@@ -60,7 +60,10 @@ fn install_packages(web: &Path) -> Result<(), String> {
         return Ok(());
     }
     let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
-    let arguments = ["ci", "--ignore-scripts", "--no-audit", "--no-fund"].map(Path::new);
+    let mut arguments = vec!["ci", "--ignore-scripts", "--no-audit", "--no-fund"];
+    if !web.join("node_modules/@biomejs").exists() {
+        arguments.push("--omit=dev");
+    }
     call(npm, &arguments, web, "installing the web pages' packages")?;
     fs::write(&stamp, wanted).map_err(|error| format!("{}: {error}", stamp.display()))
 }

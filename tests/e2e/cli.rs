@@ -390,8 +390,15 @@ fn accuracy_is_measured() {
     assert!(!json.exists() && !plot.exists());
 
     let text = kelir_ok(&[&small[..], &files, &["--reference-spp", "4096"]].concat());
-    for phrase in ["in penumbra", "PA shadow map", "spp 2048", "lights 256", "samples 1024", "numerical RMSE"]
-    {
+    for phrase in [
+        "in penumbra",
+        "PA shadow map",
+        "spp 2048",
+        "lights 256",
+        "samples 1024",
+        "numerical RMSE",
+        "instruction set",
+    ] {
         assert!(text.contains(phrase), "no {phrase:?} in\n{text}");
     }
     let json: serde_json::Value = serde_json::from_slice(&std::fs::read(json).unwrap()).unwrap();

@@ -149,21 +149,42 @@ fn a_broken_wall_is_seen() {
 /// What the server may name of the renderer: the door, and what goes in and comes out by it.
 const DOOR: [&str; 7] = ["job", "camera", "Backend", "Pixel", "RenderError", "Technique", "View"];
 
-/// What a text names of the renderer beside the door, lists in braces apart.
-fn past_the_door(text: &str) -> Vec<String> {
+/// The first names that a text has behind `prefix`, lists in braces apart.
+fn named_after(text: &str, prefix: &str) -> Vec<String> {
+    let first = |item: &str| -> String {
+        item.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+    };
     let mut found = Vec::new();
-    for named in text.split("kelir_render::").skip(1) {
-        let list =
-            named.strip_prefix('{').and_then(|rest| rest.split_once('}')).map_or(named, |(list, _)| list);
-        let items: Vec<&str> = if named.starts_with('{') { list.split(',').collect() } else { vec![named] };
-        let first = |item: &str| -> String {
-            item.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+    for named in text.split(prefix).skip(1) {
+        let Some(list) = named.strip_prefix('{') else {
+            found.push(first(named));
+            continue;
         };
-        found.extend(
-            items.into_iter().map(first).filter(|name| !name.is_empty() && !DOOR.contains(&name.as_str())),
-        );
+        // A comma parts two names where it stands in no inner list, and the list ends with its own brace.
+        let (mut depth, mut start) = (0, 0);
+        for (at, c) in list.char_indices() {
+            match c {
+                '{' => depth += 1,
+                '}' if depth > 0 => depth -= 1,
+                ',' | '}' if depth == 0 => {
+                    found.push(first(&list[start..at]));
+                    start = at + 1;
+                    if c == '}' {
+                        break;
+                    }
+                }
+                _ => {}
+            }
+        }
     }
+    found.retain(|name| !name.is_empty());
     found
+}
+
+/// What a text names of the renderer beside the door.
+fn past_the_door(text: &str) -> Vec<String> {
+    let named = named_after(text, "kelir_render::").into_iter();
+    named.filter(|name| !DOOR.contains(&name.as_str())).collect()
 }
 
 /// Rust files below a folder, each with its text.
@@ -193,6 +214,53 @@ fn the_server_reaches_the_renderer_through_one_door() {
     // Controls: by a path, from a list, and from the middle of an expression.
     let text = "use kelir_render::pa::Knobs;\nuse kelir_render::{View, mc, job::run};\nlet a = kelir_render::gpu::open();";
     assert_eq!(past_the_door(text), ["pa", "mc", "gpu"]);
+}
+
+/// What of the renderer may know techniques by name: their list, the crate's face, and what compares them.
+const KNOW_TECHNIQUES: [&str; 6] =
+    ["lib.rs", "techniques/mod.rs", "accuracy/", "bench.rs", "bench/", "numerics/"];
+
+/// Every technique that a file of the renderer knows and should not: a technique itself alone, what they share none. Tests compare freely.
+fn known_techniques(file: &str, text: &str, techniques: &BTreeSet<String>) -> Vec<String> {
+    if file.ends_with("tests.rs") || KNOW_TECHNIQUES.iter().any(|known| file.starts_with(known)) {
+        return Vec::new();
+    }
+    let own = file.strip_prefix("techniques/").and_then(|rest| rest.split('/').next());
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let named =
+        ["crate::", "super::", "techniques::"].into_iter().flat_map(|prefix| named_after(code, prefix));
+    named
+        .filter(|name| techniques.contains(name) && Some(name.as_str()) != own)
+        .map(|name| format!("{file} names {name}"))
+        .collect()
+}
+
+#[test]
+fn techniques_do_not_know_each_other() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/render/src");
+    let techniques: BTreeSet<String> = fs::read_dir(src.join("techniques"))
+        .expect("techniques")
+        .map(|entry| entry.expect("an entry"))
+        .filter(|entry| entry.path().is_dir())
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    assert!(techniques.len() >= 5, "{techniques:?}");
+    let known: Vec<String> = sources(&src)
+        .iter()
+        .flat_map(|(path, text)| {
+            let file = path.strip_prefix(&src).expect("below").to_string_lossy().replace('\\', "/");
+            known_techniques(&file, text, &techniques)
+        })
+        .collect();
+    assert_eq!(known, Vec::<String>::new());
+
+    // Negative control: a name in a list, one by way of the parent and one in full are seen; the technique itself and tests are not.
+    let text = "use crate::{View, gpu::{Gpu, Output}, mc};\nuse super::super::oracle;\nlet a = crate::pa::plan();\n\
+                let b = crate::points::one();\n#[cfg(test)]\nmod tests {\n    use crate::pcss;\n}";
+    let seen = |file: &str| known_techniques(file, text, &techniques).len();
+    assert_eq!(known_techniques("techniques/points/mod.rs", text, &techniques).len(), 3);
+    assert_eq!([seen("techniques/pa/plan.rs"), seen("trace/mod.rs"), seen("bench/kernels.rs")], [3, 4, 0]);
+    assert_eq!(known_techniques("techniques/points/tests.rs", text, &techniques), Vec::<String>::new());
 }
 
 /// Where a kind of trial may be named outside its own folders: what wrote and reads the first layout knew one kind.

@@ -10,6 +10,8 @@ use anyhow::{Result, bail};
 pub enum Need {
     /// Node.js 20 or newer with npm: builds the web bundle.
     Node,
+    /// A C compiler: SQLite and libwebp are built from source.
+    Cc,
     /// A C++ compiler: the H.264 encoder of `kelir animate -o FILE.mp4` is built from source.
     Cxx,
     /// A Vulkan driver: the wgpu backend (Mesa's software driver will do).
@@ -24,6 +26,7 @@ impl Need {
     fn present(self) -> bool {
         match self {
             Self::Node => node_major().is_some_and(|major| major >= 20) && on_path("npm"),
+            Self::Cc => on_path("cc"),
             Self::Cxx => on_path("c++"),
             Self::Vulkan => ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"]
                 .iter()
@@ -37,6 +40,7 @@ impl Need {
     fn packages(self) -> &'static [&'static str] {
         match self {
             Self::Node => &[],
+            Self::Cc => &["gcc", "libc6-dev"],
             Self::Cxx => &["g++"],
             Self::Vulkan => &["mesa-vulkan-drivers", "libvulkan1"],
             // Without recommended packages Chromium comes without a font, and a page without text.
@@ -48,6 +52,7 @@ impl Need {
     fn why(self) -> &'static str {
         match self {
             Self::Node => "Node.js 20 or newer with npm builds the web pages",
+            Self::Cc => "SQLite and libwebp are built with a C compiler, cc",
             Self::Cxx => "the H.264 encoder is built with a C++ compiler, c++",
             Self::Vulkan => "the GPU backend needs a Vulkan driver (Mesa's software driver will do)",
             Self::Chromium => "the end-to-end tests click through the pages in Chromium at /usr/bin/chromium",
@@ -58,6 +63,7 @@ impl Need {
     fn by_hand(self) -> &'static str {
         match self {
             Self::Node => "install Node.js 20 or newer from your distribution or https://nodejs.org",
+            Self::Cc => "as root: apt-get install gcc libc6-dev",
             Self::Cxx => "as root: apt-get install g++",
             Self::Vulkan => "as root: apt-get install mesa-vulkan-drivers",
             Self::Chromium => "as root: apt-get install chromium",
@@ -97,6 +103,22 @@ pub fn ensure(needs: &[Need]) -> Result<()> {
     Ok(())
 }
 
+/// Whether this machine has a GPU of its own, not one that its CPU imitates.
+pub fn has_gpu() -> bool {
+    has_gpu_below(Path::new("/"))
+}
+
+/// NVIDIA's or WSL's own device, or a render node of AMD (PCI vendor 0x1002), Intel or NVIDIA; a virtual machine's display is another's.
+fn has_gpu_below(root: &Path) -> bool {
+    let cards = std::fs::read_dir(root.join("sys/class/drm")).into_iter().flatten().flatten();
+    let mut nodes = cards.filter(|card| card.file_name().to_string_lossy().starts_with("renderD"));
+    let vendor = |card: std::fs::DirEntry| std::fs::read_to_string(card.path().join("device/vendor"));
+    ["dev/nvidia0", "dev/dxg"].iter().any(|node| root.join(node).exists())
+        || nodes.any(|card| {
+            vendor(card).is_ok_and(|vendor| ["0x1002", "0x8086", "0x10de"].contains(&vendor.trim()))
+        })
+}
+
 fn can_apt() -> bool {
     let root = Command::new("id").arg("-u").output().is_ok_and(|out| out.stdout.trim_ascii() == b"0");
     root && on_path("apt-get")
@@ -119,4 +141,27 @@ fn node_major() -> Option<u32> {
     let out = Command::new("node").arg("--version").output().ok()?;
     let text = String::from_utf8(out.stdout).ok()?;
     text.trim().strip_prefix('v')?.split('.').next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
+
+    use super::*;
+
+    /// A machine's GPUs are told by their render nodes; a display alone or a virtual one is none.
+    #[test]
+    fn a_real_gpu_is_told_from_a_virtual_one() {
+        let machine = tempfile::tempdir().unwrap();
+        let card = |name: &str, vendor: &str| {
+            let device = machine.path().join("sys/class/drm").join(name).join("device");
+            std::fs::create_dir_all(&device).unwrap();
+            std::fs::write(device.join("vendor"), vendor).unwrap();
+            has_gpu_below(machine.path())
+        };
+        assert!(!has_gpu_below(machine.path()), "no devices");
+        assert!(!card("card0", "0x8086\n"), "a display without a render node");
+        assert!(!card("renderD128", "0x1af4\n"), "virtio's");
+        assert!(card("renderD129", "0x10de\n"), "NVIDIA's");
+    }
 }

@@ -1,4 +1,4 @@
-//! Project tasks: `cargo xtask serve | test | bench | soak | pictures`. Typed, no makefile beside it.
+//! Project tasks: `cargo xtask serve | test | release | bench | soak | pictures`. Typed, no makefile beside it.
 //!
 //! It depends on nothing that takes long to build: a fresh machine meets it first.
 
@@ -31,9 +31,14 @@ enum Task {
         /// Address to listen on.
         #[arg(long, default_value = "127.0.0.1:8080")]
         listen: String,
+        /// Build the GPU backend too, for `render` and `animate` with the same binary; a machine with a real GPU gets it unasked.
+        #[arg(long)]
+        gpu: bool,
     },
     /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests.
     Test,
+    /// Build all of kelir at its fastest, target/release/kelir: about four times the work of the first `serve`.
+    Release,
     /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
     Bench,
     /// Attack the release binary: kills, disorder, floods, hostile bytes, a full disk. About three minutes; `--seed`, `--rounds`, `--seconds` and others
@@ -50,22 +55,29 @@ fn main() -> Result<()> {
     let root = run::root();
     std::env::set_current_dir(&root)?;
     match Cli::parse().task {
-        Task::Serve { data, listen } => serve(&data, &listen),
+        Task::Serve { data, listen, gpu } => serve(&data, &listen, gpu),
         Task::Test => test(),
+        Task::Release => {
+            ensure(&[Need::Node, Need::Cxx])?;
+            eprintln!("── {}", release()?.display());
+            Ok(())
+        }
         Task::Bench => bench(),
         Task::Soak { options } => soak(&options),
         Task::Pictures => pictures(),
     }
 }
 
-/// Builds in release and becomes the server; a second start builds and renders nothing again.
-fn serve(data: &std::path::Path, listen: &str) -> Result<()> {
-    ensure(&[Need::Node, Need::Cxx, Need::Vulkan])?;
-    step(
-        "build",
-        cargo(&["build", "--release", "--workspace", "--exclude", "xtask", "--exclude", "kelir-tests"]),
-    )?;
-    let binary = run::target_dir().join("release/kelir");
+/// Builds what serving needs and becomes the server; a second start builds and renders nothing again.
+fn serve(data: &std::path::Path, listen: &str, gpu: bool) -> Result<()> {
+    let gpu = gpu || install::has_gpu();
+    ensure(if gpu { &[Need::Node, Need::Cc, Need::Vulkan] } else { &[Need::Node, Need::Cc] })?;
+    let mut build = cargo(&["build", "--profile", "start", "--package", "kelir", "--no-default-features"]);
+    if gpu {
+        build.args(["--features", "gpu"]);
+    }
+    step("build", build)?;
+    let binary = run::target_dir().join("start/kelir");
     let mut server = std::process::Command::new(&binary);
     server.arg("serve").arg("--data").arg(data).args(["--listen", listen]);
     let status = server.status()?;
@@ -162,6 +174,10 @@ fn test() -> Result<()> {
     step("web units", npm("web", &["test"]))?;
     step("browser driver", npm("tests", &["ci", "--ignore-scripts"]))?;
     step("lints", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    step(
+        "lints of what `serve` builds",
+        cargo(&["clippy", "--workspace", "--no-default-features", "--", "-D", "warnings"]),
+    )?;
     let mut docs = cargo(&["doc", "--workspace", "--no-deps", "--document-private-items", "--quiet"]);
     docs.env("RUSTDOCFLAGS", "-D warnings");
     step("documentation", docs)?;

@@ -71,11 +71,28 @@ pub fn bad_input(error: impl std::fmt::Display) -> anyhow::Error {
     anyhow::Error::new(BadInput(error.to_string()))
 }
 
+/// Mesa's device-select layer looks for a display and complains on stderr; kelir orders the adapters itself. The variable that silences it has to
+/// stand before the program begins, so it begins anew with it. Where that fails, there is a complaint more.
+#[cfg(all(unix, feature = "gpu"))]
+fn without_device_select() {
+    use std::os::unix::process::CommandExt;
+    const SILENT: &str = "NODEVICE_SELECT";
+    if std::env::var_os(SILENT).is_none()
+        && let Ok(kelir) = std::env::current_exe()
+    {
+        let mut words = std::env::args_os();
+        let name = words.next().unwrap_or_else(|| "kelir".into());
+        let _ = std::process::Command::new(kelir).arg0(name).args(words).env(SILENT, "1").exec();
+    }
+}
+
 fn main() -> ExitCode {
-    // Mesa's device-select layer looks for a display and complains on stderr; kelir orders the adapters itself.
-    // SAFETY: no other thread runs yet.
-    unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
-    let done = match Cli::parse().command {
+    let command = Cli::parse().command;
+    #[cfg(all(unix, feature = "gpu"))]
+    if matches!(command, Command::Render(_) | Command::Animate(_) | Command::Bench(_)) {
+        without_device_select();
+    }
+    let done = match command {
         Command::Serve(args) => commands::serve::run(args),
         Command::Render(args) => commands::render::run(args),
         Command::Animate(args) => commands::animate::run(args),

@@ -51,6 +51,15 @@ impl Figures {
         if self.printed() { Ok(()) } else { print(text) }
     }
 
+    /// Prints what the figures were measured on; to standard error where a document stands in place of the text.
+    pub fn note(&self, text: &str) -> Result<()> {
+        if self.printed() {
+            writeln!(std::io::stderr(), "{}", text.trim_start())?;
+            return Ok(());
+        }
+        print(text)
+    }
+
     /// Prints or writes the figures, if they are asked for.
     pub fn give(&self, figures: &impl Serialize) -> Result<()> {
         match &self.json {

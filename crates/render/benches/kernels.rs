@@ -5,6 +5,7 @@ use divan::counter::ItemsCount;
 use kelir_render::bench::kernels::{self, Kernel};
 
 fn main() {
+    eprintln!("Instruction set {}.", kelir_render::Isa::detect().name());
     divan::main();
 }
 

@@ -178,7 +178,8 @@ mod tests {
         Frame {
             size: [200, 150],
             radiance: [plane.clone(), plane.clone(), plane],
-            layers: vec![],
+            visibilities: vec![],
+            standard_error: None,
             stats: crate::Stats::default(),
         }
     }

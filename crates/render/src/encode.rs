@@ -76,13 +76,18 @@ pub fn pack(r: u32, g: u32, b: u32) -> u32 {
 
 /// Display codes of a frame: sRGB of clip(L / white); `white` > 0.
 pub fn display(frame: &Frame, white: f64) -> Vec<u32> {
+    let mut codes = vec![0; frame.size[0] * frame.size[1]];
+    display_into(frame, white, &mut codes);
+    codes
+}
+
+/// The same into `out`, one code a pixel.
+pub(crate) fn display_into(frame: &Frame, white: f64, out: &mut [u32]) {
     let (srgb, scale) = (Srgb::get(), (1.0 / white) as f32);
     let [r, g, b] = &frame.radiance;
-    r.iter()
-        .zip(g)
-        .zip(b)
-        .map(|((r, g), b)| pack(srgb.code(r * scale), srgb.code(g * scale), srgb.code(b * scale)))
-        .collect()
+    for (((out, r), g), b) in out.iter_mut().zip(r).zip(g).zip(b) {
+        *out = pack(srgb.code(r * scale), srgb.code(g * scale), srgb.code(b * scale));
+    }
 }
 
 /// An 8-bit RGB PNG, tagged sRGB (perceptual), of display codes `0x__BBGGRR`.
@@ -113,14 +118,13 @@ pub struct Attributes {
     pub scene_sha256: String,
 }
 
-/// An OpenEXR file of f32 channels: R, G, B in linear radiance and the frame's layers; rows top to bottom, ZIP
+/// An OpenEXR file of [`Frame::channels`] in f32; rows top to bottom, ZIP
 /// compressed. Attributes: `white` (f32), `exposure`, `technique`, `sceneSha256` and `kelirVersion`.
 pub fn exr(frame: &Frame, attributes: &Attributes) -> Result<Vec<u8>, RenderError> {
     use exr::prelude::*;
-    let channel = |name: &str, values: &[f32]| AnyChannel::new(name, FlatSamples::F32(values.to_vec()));
-    let mut channels: SmallVec<[AnyChannel<FlatSamples>; 4]> =
-        ["R", "G", "B"].iter().zip(&frame.radiance).map(|(name, plane)| channel(name, plane)).collect();
-    channels.extend(frame.layers.iter().map(|layer| channel(&layer.name, &layer.values)));
+    let channel =
+        |(name, values): (String, &[f32])| AnyChannel::new(&*name, FlatSamples::F32(values.to_vec()));
+    let channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = frame.channels().map(channel).collect();
     let mut own = LayerAttributes::default();
     let text = |s: &str| AttributeValue::Text(Text::new_or_none(s).unwrap_or_else(|| Text::from("?")));
     own.other.insert(Text::from("white"), AttributeValue::F32(attributes.white as f32));
@@ -144,6 +148,7 @@ mod tests {
     use rayon::prelude::*;
 
     use super::*;
+    use crate::{Visibility, VisibilityModel};
 
     /// Every f32 from 0 to 1 (and a little beyond) against the definition, by walking the 255 steps of the definition.
     #[test]
@@ -184,11 +189,16 @@ mod tests {
 
     fn frame() -> Frame {
         let plane = |k: usize| (0..12).map(|i| (i * 3 + k) as f32 / 40.0).collect::<Vec<_>>();
-        let layers = vec![crate::Layer { name: "Vgeo.inner".into(), values: plane(1) }];
+        let seen =
+            |model, channel, k| Visibility { emitter: "inner".into(), model, channel, values: plane(k) };
         Frame {
             size: [4, 3],
             radiance: [plane(0), plane(1), plane(2)],
-            layers,
+            visibilities: vec![
+                seen(VisibilityModel::Geometric, None, 1),
+                seen(VisibilityModel::Irradiance, Some(2), 4),
+            ],
+            standard_error: Some([plane(5), plane(6), plane(7)]),
             stats: crate::Stats::default(),
         }
     }
@@ -229,7 +239,9 @@ mod tests {
         };
         assert_eq!(find("R"), frame().radiance[0]);
         assert_eq!(find("B"), frame().radiance[2]);
-        assert_eq!(find("Vgeo.inner"), frame().layers[0].values);
+        assert_eq!(find("Vgeo.inner"), frame().visibilities[0].values);
+        assert_eq!(find("Virr.inner.B"), frame().visibilities[1].values);
+        assert_eq!(find("SE.G"), frame().standard_error.unwrap()[1]);
         let white = image.layer_data.attributes.other.get(&Text::from("white")).unwrap();
         assert_eq!(*white, AttributeValue::F32(0.25));
     }

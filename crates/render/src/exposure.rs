@@ -1,9 +1,10 @@
 //! The radiance that the display shows as white.
 
-use kelir_scene::{Ambient, Exposure, Scene, Theatre};
+use kelir_scene::{Ambient, Exposure, Theatre};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::subject::{Staged, Subject};
 use crate::{View, albedo, irradiance::UnitRows};
 
 /// White for these theatres (a still, or every frame of a timeline): the written radiance, or the brightest unshadowed
@@ -67,25 +68,18 @@ impl Rule {
     }
 
     /// White for a scene: as the scene says, or by this rule; `time_s` is a still's instant, absent for the scene as written.
-    pub fn white(self, scene: &Scene, view: &View, time_s: Option<f64>) -> f64 {
-        // Exposure does not see puppets: only the lamp's path matters, and each of its places once.
-        let mut still = Theatre { planes: Vec::new(), ..scene.still() };
+    pub fn white<S: Staged>(self, scene: &S, view: &View, time_s: Option<f64>) -> f64 {
         let Some(timeline) = scene.timeline().filter(|_| self == Self::Timeline) else {
-            if let Some(time_s) = time_s {
-                still.lamp.position_m = scene.lamp_at(time_s);
-            }
-            return white([&still], view);
+            return Subject::white(&[scene.lit(time_s)], view);
         };
-        let mut theatres: Vec<Theatre> = Vec::new();
+        let mut all: Vec<S::Subject> = Vec::new();
         for frame in 0..timeline.frame_count() {
-            let position_m = scene.lamp_at(timeline.frame_time_s(frame));
-            if theatres.iter().all(|t| t.lamp.position_m != position_m) {
-                let mut theatre = still.clone();
-                theatre.lamp.position_m = position_m;
-                theatres.push(theatre);
+            let lit = scene.lit(Some(timeline.frame_time_s(frame)));
+            if all.iter().all(|other| !other.same_staging(&lit)) {
+                all.push(lit);
             }
         }
-        white(&theatres, view)
+        Subject::white(&all, view)
     }
 }
 

@@ -1,17 +1,10 @@
 //! Animations as one file, for sharing: APNG (lossless) and MP4 (H.264, small). Studies show separate frames; see the manifest of `kelir animate`.
 
-use muxide::api::{Muxer, MuxerBuilder, VideoCodec};
-use openh264::OpenH264API;
-use openh264::encoder::{
-    ColorPrimaries, Encoder, EncoderConfig, FrameRate, IntraFramePeriod, MatrixCoefficients, QpRange,
-    RateControlMode, TransferCharacteristics, VuiConfig,
-};
-use openh264::formats::{RgbSliceU8, YUVBuffer};
+#[cfg_attr(not(feature = "mp4"), path = "film/no_mp4.rs")]
+mod mp4;
 
 use crate::RenderError;
-
-/// Quantiser of the MP4, 0 (finest) to 51: at 14 the screens' slow gradients show no bands.
-const QUANTISER: u8 = 14;
+use mp4::Mp4;
 
 /// What a film is written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +80,7 @@ impl Film {
         }
         match self.kind {
             Kind::Apng(film) => film.writer.finish().map_err(failed("apng")).map(|()| take(&film.bytes)),
-            Kind::Mp4(film) => film.muxer.finish().map_err(failed("mp4")).map(|()| take(&film.bytes)),
+            Kind::Mp4(film) => film.finish(),
         }
     }
 }
@@ -173,69 +166,6 @@ fn changed(before: &[u32], after: &[u32], width: usize) -> [usize; 4] {
         bounds = [bounds[0].min(first), bounds[1].min(row), bounds[2].max(last + 1), row + 1];
     }
     if bounds[2] == 0 { [0, 0, 1, 1] } else { bounds }
-}
-
-struct Mp4 {
-    encoder: Encoder,
-    muxer: Muxer<Sink>,
-    bytes: Shared,
-    run: Run,
-    written: usize,
-    /// The last frame as it was coded.
-    last: Vec<u8>,
-}
-
-/// H.264 in 4:2:0 has even sides only; an odd picture repeats its last row or column.
-fn even(side: usize) -> usize {
-    side.next_multiple_of(2)
-}
-
-impl Mp4 {
-    fn new(run: Run) -> Result<Self, RenderError> {
-        let [width, height] = run.size.map(even);
-        // The library's conversion is BT.601's matrix in limited range; a file that says so shows its colours right.
-        let colours = VuiConfig::new()
-            .color_primaries(ColorPrimaries::Bt709)
-            .transfer_characteristics(TransferCharacteristics::Srgb)
-            .matrix_coefficients(MatrixCoefficients::Smpte170M)
-            .full_range(false);
-        // With rate control on, or skipping allowed, the encoder drops frames.
-        let config = EncoderConfig::new()
-            .skip_frames(false)
-            .rate_control_mode(RateControlMode::Off)
-            .qp(QpRange::new(QUANTISER, QUANTISER))
-            .max_frame_rate(FrameRate::from_hz(run.fps as f32))
-            .intra_frame_period(IntraFramePeriod::from_num_frames(60))
-            .scene_change_detect(false)
-            .adaptive_quantization(false)
-            .background_detection(false)
-            .vui(colours);
-        let encoder = Encoder::with_api_config(OpenH264API::from_source(), config).map_err(failed("mp4"))?;
-        let bytes = Shared::default();
-        let muxer = MuxerBuilder::new(Sink(bytes.clone()))
-            .video(VideoCodec::H264, width as u32, height as u32, run.fps)
-            .build()
-            .map_err(failed("mp4"))?;
-        Ok(Self { encoder, muxer, bytes, run, written: 0, last: Vec::new() })
-    }
-
-    fn frame(&mut self, codes: &[u32]) -> Result<(), RenderError> {
-        let [width, height] = self.run.size;
-        let [wide, high] = self.run.size.map(even);
-        let pixels: Vec<u8> = (0..high)
-            .flat_map(|row| (0..wide).map(move |column| row.min(height - 1) * width + column.min(width - 1)))
-            .flat_map(|at| rgb(&codes[at]))
-            .collect();
-        let picture = YUVBuffer::from_rgb8_source(RgbSliceU8::new(&pixels, (wide, high)));
-        let coded = self.encoder.encode(&picture).map_err(failed("mp4"))?;
-        let key =
-            matches!(coded.frame_type(), openh264::encoder::FrameType::IDR | openh264::encoder::FrameType::I);
-        let time_s = self.written as f64 / self.run.fps;
-        self.last = coded.to_vec();
-        self.muxer.write_video(time_s, &self.last, key).map_err(failed("mp4"))?;
-        self.written += 1;
-        Ok(())
-    }
 }
 
 #[cfg(test)]

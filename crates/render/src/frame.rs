@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
-use crate::RenderError;
+use crate::subject::Subject;
+use crate::{RenderError, encode};
 
 /// How a pixel's value is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,12 +37,12 @@ impl View {
     ///
     /// # Errors
     /// [`RenderError::View`]: which size, and which it would have to be.
-    pub fn check(&self, theatre: &Theatre) -> Result<(), RenderError> {
+    pub fn check(&self, subject: &impl Subject) -> Result<(), RenderError> {
         let [w, h] = self.size;
         if w == 0 || h == 0 || w > 1 << 16 || h > 1 << 16 {
             return Err(RenderError::View(format!("size = {w}x{h}: each side from 1 to 65536 pixels")));
         }
-        let (screen_w, screen_h) = (theatre.screen.width_m, theatre.screen.height_m);
+        let [screen_w, screen_h] = subject.sides_m();
         let ideal = w as f64 * screen_h / screen_w;
         if (ideal - h as f64).abs() > 0.5 && (h as f64 * screen_w / screen_h - w as f64).abs() > 0.5 {
             return Err(RenderError::View(format!(
@@ -52,26 +54,92 @@ impl View {
     }
 }
 
-/// A drawn image in linear light.
+/// A drawn image in linear light; every plane holds `width * height` values, row-major, first row on top.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Pixels [width, height].
     pub size: [usize; 2],
-    /// The audience's linear radiance, three planes (R, G, B) of `width * height`, row-major, first row on top.
+    /// The audience's linear radiance: R, G, B.
     pub radiance: [Vec<f32>; 3],
-    /// Further channels: `Vgeo.<emitter>`, `Virr.<emitter>` (suffixed `.R/.G/.B` where puppets are coloured), `SE.R/G/B`.
-    pub layers: Vec<Layer>,
+    /// How much of each emitter is seen; none where only the radiance was asked for.
+    pub visibilities: Vec<Visibility>,
+    /// Standard error of the radiance, R, G, B, where the technique knows it; 0 where nothing was sampled.
+    pub standard_error: Option<[Vec<f32>; 3]>,
     /// What was done and skipped.
     pub stats: Stats,
 }
 
-/// One named f32 channel of a frame.
-#[derive(Clone, Debug)]
-pub struct Layer {
-    /// Channel name, as written to EXR.
-    pub name: String,
-    /// `width * height` values, row-major, first row on top.
+/// The visibility of one emitter on every pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Visibility {
+    /// The emitter's name; `dome` for the dome.
+    pub emitter: String,
+    /// What it is a share of.
+    pub model: VisibilityModel,
+    /// 0, 1, 2 for R, G, B where puppets are coloured; otherwise it holds for all.
+    pub channel: Option<usize>,
+    /// One a pixel.
     pub values: Vec<f32>,
+}
+
+/// The visibility that a technique's formula tends to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum VisibilityModel {
+    /// Share of the emitter's area that is seen.
+    Geometric,
+    /// Share of the emitter's irradiance that arrives, which a light meter reads: no model error.
+    Irradiance,
+}
+
+/// Names of the channels R, G, B.
+const RGB: [&str; 3] = ["R", "G", "B"];
+
+impl Frame {
+    /// Every plane under its channel's name in an EXR file.
+    pub fn channels(&self) -> impl Iterator<Item = (String, &[f32])> {
+        let radiance = RGB.iter().zip(&self.radiance).map(|(c, values)| ((*c).to_owned(), &values[..]));
+        let visibilities = self.visibilities.iter().map(|v| (v.name(), &v.values[..]));
+        let errors = RGB.iter().zip(self.standard_error.iter().flatten());
+        radiance.chain(visibilities).chain(errors.map(|(c, values)| (format!("SE.{c}"), &values[..])))
+    }
+}
+
+impl Visibility {
+    /// Of each emitter in `names`, and in each channel where a puppet is coloured; `values` takes the emitter's and the channel's index.
+    pub(crate) fn each<'a>(
+        theatre: &Theatre,
+        names: impl IntoIterator<Item = &'a str>,
+        model: VisibilityModel,
+        mut values: impl FnMut(usize, usize) -> Vec<f32>,
+    ) -> Vec<Self> {
+        let coloured = theatre.planes.iter().any(|plane| plane.mask.channels == 3);
+        let mut all = Vec::new();
+        for (e, name) in names.into_iter().enumerate() {
+            for c in 0..if coloured { 3 } else { 1 } {
+                let channel = coloured.then_some(c);
+                all.push(Self { emitter: name.to_owned(), model, channel, values: values(e, c) });
+            }
+        }
+        all
+    }
+
+    /// `Vgeo.EMITTER` or `Virr.EMITTER`, with `.R`, `.G` or `.B` behind it where it holds for one channel.
+    pub fn name(&self) -> String {
+        let kind = match self.model {
+            VisibilityModel::Geometric => "Vgeo",
+            VisibilityModel::Irradiance => "Virr",
+        };
+        match self.channel {
+            None => format!("{kind}.{}", self.emitter),
+            Some(c) => format!("{kind}.{}.{}", self.emitter, RGB[c]),
+        }
+    }
+}
+
+/// Names of a theatre's emitters.
+pub(crate) fn emitters(theatre: &Theatre) -> impl Iterator<Item = &str> {
+    theatre.lamp.emitters.iter().map(|emitter| emitter.name.as_str())
 }
 
 /// Counters and step times of one drawing, in the order they happened.
@@ -84,6 +152,13 @@ pub struct Stats {
     pub values: std::collections::BTreeMap<String, f64>,
     /// (step, milliseconds of wall time).
     pub steps_ms: Vec<(String, f64)>,
+}
+
+impl Stats {
+    /// Notes a step that began at `since` and is done now.
+    pub(crate) fn step(&mut self, name: &str, since: Instant) {
+        self.steps_ms.push((name.into(), since.elapsed().as_secs_f64() * 1e3));
+    }
 }
 
 /// How far a long drawing has come, in rows of the image, for whoever shows it; clones count together.
@@ -108,19 +183,30 @@ impl Meter {
     }
 }
 
-/// Draws theatres with one technique on one backend; keeps what it built between calls and reuses what did not change.
-pub trait Renderer: Send {
-    /// The audience's linear radiance.
-    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError>;
+/// Draws one kind of [`Subject`] with one technique on one backend; keeps what it built between calls and reuses what did not change.
+pub trait Renderer<S = Theatre>: Send {
+    /// The audience's linear radiance, and the emitters' visibilities where they are wanted: what gives no light is skipped otherwise.
+    fn frame(&mut self, subject: &S, view: &View, visibilities: bool) -> Result<Frame, RenderError>;
 
-    /// Display codes: sRGB-encoded clip(L / white), each pixel `0xFFBBGGRR` (bytes R, G, B, 255), into `out` of `width * height`.
+    /// The audience's linear radiance with all visibilities.
+    fn radiance(&mut self, subject: &S, view: &View) -> Result<Frame, RenderError> {
+        self.frame(subject, view, true)
+    }
+
+    /// Display codes: sRGB-encoded clip(L / white), each pixel `0xFFBBGGRR` (bytes R, G, B, 255), into `out` of `width * height`. Who
+    /// overrides it gives the codes of the radiance, only sooner.
     fn display(
         &mut self,
-        theatre: &Theatre,
+        subject: &S,
         view: &View,
         white: f64,
         out: &mut [u32],
-    ) -> Result<Stats, RenderError>;
+    ) -> Result<Stats, RenderError> {
+        check_display(view, white, out)?;
+        let frame = self.frame(subject, view, false)?;
+        encode::display_into(&frame, white, out);
+        Ok(frame.stats)
+    }
 
     /// Counts the rows of what is drawn from now on; techniques that are done before anyone looks do not.
     fn watch(&mut self, meter: &Meter) {
@@ -134,4 +220,16 @@ pub trait Renderer: Send {
 
     /// What drew it, for provenance: "native 2 threads avx2" or the GPU adapter's name and driver.
     fn adapter(&self) -> String;
+}
+
+/// Errors: room for another number of pixels than the view's, or a white that nothing can be divided by.
+pub(crate) fn check_display(view: &View, white: f64, out: &[u32]) -> Result<(), RenderError> {
+    let [w, h] = view.size;
+    if out.len() != w * h {
+        return Err(RenderError::View(format!("{} pixels given for {w}x{h}", out.len())));
+    }
+    if !(white.is_finite() && white > 0.0) {
+        return Err(RenderError::View(format!("white = {white}: a radiance above 0")));
+    }
+    Ok(())
 }

@@ -16,12 +16,13 @@ use sha2::{Digest, Sha256};
 
 use crate::camera::Camera;
 use crate::exposure::Rule;
-use crate::{Backend, Pixel, RenderError, Technique, View, albedo};
+use crate::subject::{Staged, Subject};
+use crate::{Backend, Pixel, RenderError, Technique, View};
 
 pub use drawing::{Drawing, Drawn};
 use measure::measure;
 pub use measure::{Measured, StandardError};
-pub(crate) use measure::{Spread, brightest, irradiance, named};
+pub(crate) use measure::{Spread, irradiance, named};
 pub use rehearsal::rehearse;
 
 /// Media type of an animation's manifest.
@@ -74,7 +75,7 @@ impl<S> Job<S> {
     }
 }
 
-impl Job {
+impl<S: Staged> Job<S> {
     /// How many frames are asked for. Errors: an animation of a scene without a timeline.
     fn frames(&self) -> Result<usize, RenderError> {
         match (self.output, self.scene.timeline()) {
@@ -206,7 +207,7 @@ struct Manifest<'a> {
 ///
 /// Errors: a scene that the technique can't draw, an impossible view, knobs out of range, no adapter; an animation of a scene
 /// without a timeline.
-pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus, RenderError> {
+pub fn run<S: Staged>(job: &mut Job<S>, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus, RenderError> {
     job.check()?;
     let frames = job.frames()?;
     let compared = match (&job.reference, job.output) {
@@ -232,9 +233,9 @@ pub fn run(job: &mut Job, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus
             *counts.entry("frames_repeated".into()).or_insert(0) += 1;
             continue;
         }
-        if let (Some(linear), Some(theatre)) = (&linear, drawing.shown()) {
-            spread.add(linear, &albedo::on_grid(&theatre.screen, &view), |_, se| se > 0.0);
-            full_scale = full_scale.max(brightest(theatre, &view));
+        if let (Some(linear), Some(subject)) = (&linear, drawing.shown()) {
+            spread.add(linear, &subject.albedo(&view), &|_, se| se > 0.0);
+            full_scale = full_scale.max(subject.brightest(&view));
         }
         for (name, count) in stats.counts {
             *counts.entry(name).or_insert(0) += count;

@@ -5,6 +5,8 @@
 //! unshadowed emitter ([`irradiance`]), where a point of the screen sees the emitter on an occluder plane
 //! ([`project`]), the albedo on the pixel grid ([`albedo`]) and the exposure ([`exposure`]).
 
+#![cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "the GPU's twins are not built"))]
+
 pub mod accuracy;
 pub mod albedo;
 pub mod ambient;
@@ -15,6 +17,7 @@ pub mod exposure;
 pub mod file;
 pub mod film;
 pub mod frame;
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 pub mod gpu;
 pub mod irradiance;
 pub mod job;
@@ -22,7 +25,9 @@ pub mod numerics;
 pub mod penumbra;
 pub mod project;
 mod simd;
+pub mod subject;
 pub mod techniques;
+mod trace;
 
 pub use exposure::white;
 pub use frame::*;

@@ -3,10 +3,9 @@
 use glam::DVec2;
 use kelir_scene::{Mask, Plane, Theatre};
 
-use crate::pa::plan::{Piece, is_tilted};
-use crate::pa::tilted::Frame;
-use crate::pa::window::Windows;
-use crate::project::{ShadowBox, pixel_m};
+use crate::project::tilted::{Piece, PlaneFrame};
+use crate::project::window::Windows;
+use crate::project::{ShadowBox, is_tilted, pixel_m};
 use crate::{Pixel, View};
 
 /// Counts of neighbouring texels that differ, as prefix sums; the mask is framed by one clear texel.
@@ -76,7 +75,7 @@ pub fn mask(theatre: &Theatre, view: &View) -> Vec<bool> {
 
 fn add_tilted(theatre: &Theatre, view: &View, plane: &Plane, sides_m: DVec2, out: &mut [bool]) {
     let edges = Edges::new(&plane.mask);
-    let frame = Frame::new(plane);
+    let frame = PlaneFrame::new(plane);
     let lamp = Piece { emitter: 0, centre_m: theatre.lamp.position_m, size_m: sides_m.into(), weight: 1.0 };
     let half = if view.pixel == Pixel::Area { 0.5 } else { 0.0 };
     let width = view.size[0];
@@ -154,7 +153,7 @@ mod tests {
         let frame = pa::Native::new(pa::Knobs::default()).radiance(&theatre, &view).unwrap();
         let marked = super::mask(&theatre, &view);
         let mut seen = [0; 2];
-        for (v, marked) in frame.layers[0].values.iter().zip(&marked) {
+        for (v, marked) in frame.visibilities[0].values.iter().zip(&marked) {
             assert_eq!(*v > 0.0 && *v < 1.0, *marked, "visibility {v}");
             seen[usize::from(*marked)] += 1;
         }

@@ -15,6 +15,7 @@ mod puppet;
 mod reference;
 mod scene;
 mod staging;
+mod subject;
 pub mod theatre;
 mod timeline;
 mod weave;

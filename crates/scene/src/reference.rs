@@ -11,6 +11,7 @@ use crate::scene::read_into;
 /// Between them these ask for every key.
 const SAMPLES: [&str; 2] = [
     r#"
+subject = "theatre"
 [screen]
 width_m = 1.6
 height_m = 0.9

@@ -15,6 +15,7 @@ use crate::load::Loader;
 use crate::puppet::masks::Masks;
 use crate::puppet::read::{Entry, degrees, find_part, pose_deg, tilt};
 use crate::staging::{Misplaced, Puppet, Staging};
+use crate::subject::{self, Subject};
 use crate::theatre::{Albedo, Ambient, Emitter, Exposure, Lamp, Mask, Texels, Theatre};
 use crate::timeline::{self, Driven, Target, Timeline};
 
@@ -140,6 +141,16 @@ pub(crate) fn read_into(
 
 fn read_scene(root: &Node, name: &str, loader: Loader) -> Option<Scene> {
     let mut sections = root.table()?;
+    let subject = sections.optional(
+        "subject",
+        "what the scene shows; without it a theatre, which is all that can be drawn yet",
+        Subject::Theatre,
+        subject::subject,
+    );
+    if subject.is_some_and(|subject| subject != Subject::Theatre) {
+        // It has other sections: what lacks of a theatre's would only hide the reason.
+        return None;
+    }
     let screen = sections.need("screen", "the [screen] section", |n| fields::screen(n, name, &loader));
     let (lamp_m, emitters) = sections.need("lamp", "the [lamp] section", fields::lamp).unwrap_or_default();
     let ambient = sections.optional(

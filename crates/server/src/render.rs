@@ -142,20 +142,18 @@ pub(crate) fn lines(problems: Vec<Problem>) -> String {
     problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
 
-/// What a stimulus is measured against: the study's own Monte-Carlo condition, the one with the most samples; Monte-Carlo
-/// images themselves carry their standard error.
+/// What a stimulus is measured against: the study's own ground truth, the condition of it with the most samples; images of
+/// the ground truth themselves carry their standard error.
 fn reference(task: &Task<'_>, technique: &Technique) -> Option<Technique> {
-    if matches!(technique, Technique::Mc(_)) {
+    if technique.is_truth() {
         return None;
     }
     let conditions = task.study.conditions.values().filter_map(|condition| match condition {
-        Condition::Rendered { technique: name, knobs, .. } if name == "mc" => {
-            self::technique(name, knobs).ok()
-        }
+        Condition::Rendered { technique: name, knobs, .. } => self::technique(name, knobs).ok(),
         _ => None,
     });
-    let spp = |technique: &Technique| if let Technique::Mc(knobs) = technique { knobs.spp } else { 0 };
-    conditions.max_by_key(spp).or_else(|| self::technique("mc", &BTreeMap::new()).ok())
+    let best = conditions.filter(Technique::is_truth).max_by_key(Technique::truth_samples);
+    Some(best.unwrap_or_else(Technique::truth))
 }
 
 #[cfg(test)]

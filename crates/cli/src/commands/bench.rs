@@ -1,6 +1,7 @@
 //! `kelir bench`: what kelir measures of itself.
 
 use anyhow::Result;
+use kelir_render::Isa;
 
 use super::drawing::Drawing;
 use crate::output::Figures;
@@ -51,8 +52,26 @@ pub enum Command {
     Rows(rows::Args),
 }
 
+impl Command {
+    fn figures(&self) -> &Figures {
+        match self {
+            Self::Frames { figures, .. } | Self::Numerics { figures, .. } => figures,
+            Self::Accuracy(args) => &args.figures,
+            Self::Load(args) => &args.figures,
+            Self::Rows(args) => &args.figures,
+        }
+    }
+}
+
 /// Runs the command.
 pub fn run(command: Command) -> Result<()> {
+    let figures = command.figures().clone();
+    measure(command)?;
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+    figures.note(&format!("\nMeasured with instruction set {} on {threads} threads.", Isa::detect().name()))
+}
+
+fn measure(command: Command) -> Result<()> {
     match command {
         Command::Frames { drawing, frames, scaling, figures } => {
             frames::run(&drawing, frames, scaling, &figures)

@@ -134,11 +134,8 @@ struct StandardError {
 
 impl StandardError {
     fn of(frame: &Frame, white: f64) -> Option<Self> {
-        let layers: Vec<_> = frame.layers.iter().filter(|layer| layer.name.starts_with("SE.")).collect();
-        if layers.is_empty() {
-            return None;
-        }
-        let values = || layers.iter().flat_map(|layer| &layer.values).map(|value| f64::from(*value) / white);
+        let errors = frame.standard_error.as_ref()?;
+        let values = || errors.iter().flatten().map(|value| f64::from(*value) / white);
         let (sampled, sum) =
             values().filter(|value| *value > 0.0).fold((0_u64, 0.0), |(n, sum), value| (n + 1, sum + value));
         let all = values().count().max(1) as f64;

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::{OnCrops, compare};
 use crate::albedo::PixelAlbedo;
 use crate::oracle::{Knobs, Oracle, Visibility};
-use crate::{Frame, RenderError, View};
+use crate::{Frame, RenderError, View, VisibilityModel};
 
 /// A square of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -17,16 +17,6 @@ pub struct Crop {
     pub y: usize,
     /// Pixels a side.
     pub side: usize,
-}
-
-/// The visibility that a technique's formula tends to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Model {
-    /// Mean over the emitter's area.
-    Geometric,
-    /// What a light meter reads: no model error.
-    Irradiance,
 }
 
 /// `[count, side]` crops: of the image's tiles of that side the ones that have the largest share of penumbra pixels (at least half, where there
@@ -110,9 +100,10 @@ impl Truth {
             .flat_map(|c| self.pixels.iter().map(move |k| irradiance[c * self.width + k]))
             .map(|e| if e.is_finite() { e } else { 0.0 })
             .collect();
-        let (model, own) = match frame.layers.iter().any(|l| l.name.starts_with("Virr.")) {
-            true => (Model::Irradiance, &self.irradiance),
-            false => (Model::Geometric, &self.geometric),
+        // Who draws both is drawn by the true one.
+        let (model, own) = match frame.visibilities.iter().any(|v| v.model == VisibilityModel::Irradiance) {
+            true => (VisibilityModel::Irradiance, &self.irradiance),
+            false => (VisibilityModel::Geometric, &self.geometric),
         };
         Ok(OnCrops {
             model,
@@ -122,17 +113,17 @@ impl Truth {
         })
     }
 
-    fn visibility_max(&self, frame: &Frame, model: Model) -> f64 {
-        let prefix = if model == Model::Irradiance { "Virr" } else { "Vgeo" };
+    fn visibility_max(&self, frame: &Frame, model: VisibilityModel) -> f64 {
         let mut most = 0f64;
-        for (e, name) in self.names.iter().enumerate() {
-            for (c, suffix) in ["", ".R", ".G", ".B"].iter().enumerate() {
-                let name = format!("{prefix}.{name}{suffix}");
-                let Some(layer) = frame.layers.iter().find(|l| l.name == name) else { continue };
-                for (k, seen) in self.pixels.iter().zip(&self.visibilities) {
-                    let of = if model == Model::Irradiance { seen[e].irradiance } else { seen[e].geometric };
-                    most = most.max((f64::from(layer.values[*k]) - of[c.saturating_sub(1)]).abs());
-                }
+        for drawn in frame.visibilities.iter().filter(|v| v.model == model) {
+            // The dome is no emitter: the oracle has no visibility of it.
+            let Some(e) = self.names.iter().position(|name| *name == drawn.emitter) else { continue };
+            for (k, seen) in self.pixels.iter().zip(&self.visibilities) {
+                let of = match model {
+                    VisibilityModel::Geometric => seen[e].geometric,
+                    VisibilityModel::Irradiance => seen[e].irradiance,
+                };
+                most = most.max((f64::from(drawn.values[*k]) - of[drawn.channel.unwrap_or(0)]).abs());
             }
         }
         most

@@ -19,11 +19,12 @@ use kelir_scene::Scene;
 use kelir_vision::errors::{Errors, errors};
 
 pub use cases::{Case, SEED, all};
-pub use crops::{Crop, Model};
+pub use crops::Crop;
 pub use report::{CaseReport, Measured, OnCrops, Oracle, Outcome, Reference, Report, Times};
 
 use crate::exposure::Rule;
-use crate::job::{Spread, brightest, irradiance};
+use crate::job::{Spread, irradiance};
+use crate::subject::Subject;
 use crate::{Backend, Frame, RenderError, Technique, View, albedo, encode, mc, penumbra, renderer};
 use crops::Truth;
 use images::Seen;
@@ -69,8 +70,7 @@ impl Options {
         if self.reference_seed == SEED {
             return refuse(format!("reference_seed = {SEED}: the images under test have this one"));
         }
-        let spp = |case: &Case| if let Technique::Mc(knobs) = &case.technique { knobs.spp } else { 0 };
-        let most = cases.iter().map(spp).max().unwrap_or(0);
+        let most = cases.iter().map(|case| case.technique.truth_samples()).max().unwrap_or(0);
         if self.reference_spp <= most {
             let spp = self.reference_spp;
             return refuse(format!("reference_spp = {spp}: more than the {most} of an image under test"));
@@ -128,12 +128,12 @@ pub fn measure(
     let frame = drawing.radiance(theatre, view)?;
     let seconds = clock.elapsed().as_secs_f64();
     let albedo = albedo::on_grid(&theatre.screen, view);
-    let brightest = brightest(theatre, view);
+    let brightest = theatre.brightest(view);
     let full_scale = if brightest > 0.0 { brightest } else { 1.0 };
     let penumbra = penumbra::mask(theatre, view);
     let floor = |counted: &dyn Fn(usize) -> bool| {
         let mut spread = Spread::default();
-        spread.add(&frame, &albedo, |k, _| counted(k));
+        spread.add(&frame, &albedo, &|k, _| counted(k));
         spread.root_mean_square() / full_scale
     };
     let reference = Reference {

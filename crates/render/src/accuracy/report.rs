@@ -3,9 +3,9 @@
 use kelir_vision::errors::Errors;
 use serde::Serialize;
 
-use super::{Case, Crop, Model};
+use super::{Case, Crop};
 use crate::job::named;
-use crate::{Backend, Pixel, Technique};
+use crate::{Backend, Pixel, Technique, VisibilityModel};
 
 /// What [`super::measure`] found.
 #[derive(Clone, Debug, Serialize)]
@@ -117,7 +117,7 @@ pub struct Measured {
 #[derive(Clone, Debug, Serialize)]
 pub struct OnCrops {
     /// Which visibility the technique's formula tends to.
-    pub model: Model,
+    pub model: VisibilityModel,
     /// Against the oracle of that model.
     #[serde(serialize_with = "named")]
     pub numerical: Errors,

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use super::*;
-use crate::Pixel;
+use crate::{Pixel, VisibilityModel};
 
 /// Two emitters and opaque blocks at an angle, far enough off axis that the models differ.
 const SCENE: &str = r#"
@@ -92,7 +92,7 @@ fn errors_are_what_theory_has_them() {
     // PA: nothing numerical, all model; by irradiance the model error goes, too.
     let [pa] = measured(&report, "PA")[..] else { panic!("one split is enough behind one plane") };
     let crops = pa.crops.as_ref().unwrap();
-    assert_eq!(crops.model, Model::Geometric);
+    assert_eq!(crops.model, VisibilityModel::Geometric);
     assert!(crops.visibility_max <= 1e-6 && crops.numerical.max <= 1e-6, "{crops:?}");
     assert_eq!(crops.total.count, 3 * 3 * 9);
     let model = report.oracle.geometric;
@@ -101,7 +101,7 @@ fn errors_are_what_theory_has_them() {
     let by_irradiance: Vec<_> = measured(&report, "PA by irradiance");
     assert!(by_irradiance.windows(2).all(|m| m[1].penumbra.rmse < m[0].penumbra.rmse));
     assert!(by_irradiance[2].penumbra.rmse < 0.2 * pa.penumbra.rmse);
-    assert!(by_irradiance.iter().all(|m| m.crops.as_ref().unwrap().model == Model::Irradiance));
+    assert!(by_irradiance.iter().all(|m| m.crops.as_ref().unwrap().model == VisibilityModel::Irradiance));
 
     // The rivals come down to PA's model error and no further.
     for series in ["points", "PCSS", "PA shadow map"] {

@@ -13,7 +13,7 @@ use crate::encode::Srgb;
 use crate::pa::plan::Plan;
 use crate::pa::rows::Combined;
 use crate::pa::table::Table;
-use crate::{Pixel, View, mc, pa};
+use crate::{Pixel, View, pa, trace};
 
 /// One loop and how many texels, pixels, values or samples it goes through.
 pub struct Kernel {
@@ -124,7 +124,7 @@ pub fn srgb() -> Kernel {
 /// `spp` samples (a multiple of 16) of each of 64 pixels through a mask of 1024² texels.
 pub fn samples(spp: u32) -> Kernel {
     let view = View { size: [1920, 1080], pixel: Pixel::Area, skip: true };
-    let mut one = mc::sampler(theatre(0.1), &view, spp);
+    let mut one = trace::sampler(theatre(0.1), &view, spp);
     Kernel { items: 64 * spp as usize, once: Box::new(move || (900..964).for_each(|i| one(i, 540))) }
 }
 

@@ -3,6 +3,7 @@
 use openh264::decoder::Decoder;
 use openh264::formats::YUVSource;
 
+use super::mp4::even;
 use super::*;
 
 const SIZE: [usize; 2] = [64, 35];
@@ -133,4 +134,16 @@ fn what_a_film_cannot_be_is_said() {
     assert!(refused(Format::Mp4, SIZE, 30.0, 0).contains("frames"));
     let short = Film::new(Format::Apng, Run { size: SIZE, fps: 30.0, frames: 2, repeat: true }).unwrap();
     assert!(short.finish().is_err(), "a film with frames missing is no film");
+}
+
+#[path = "no_mp4.rs"]
+#[allow(dead_code, reason = "only the refusal is tried")]
+mod absent;
+
+/// A kelir without its encoder says what has one, and what it writes itself.
+#[test]
+fn a_build_without_an_encoder_says_so() {
+    let run = Run { size: [64, 64], fps: 25.0, frames: 1, repeat: false };
+    let message = absent::Mp4::new(run).err().unwrap().to_string();
+    assert!(message.contains("cargo xtask release") && message.contains(".apng"), "{message}");
 }

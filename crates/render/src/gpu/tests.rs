@@ -89,7 +89,15 @@ fn no_shader_is_left_out() {
     names.sort();
     assert_eq!(
         names,
-        ["mc.wgsl", "pcss.wgsl", "rows.wgsl", "shade.wgsl", "table.wgsl", "tilted.wgsl", "visibility.wgsl"]
+        [
+            "pcss.wgsl",
+            "rows.wgsl",
+            "shade.wgsl",
+            "table.wgsl",
+            "tilted.wgsl",
+            "trace.wgsl",
+            "visibility.wgsl"
+        ]
     );
 }
 
@@ -132,4 +140,17 @@ fn a_failed_device_is_an_error() {
     let error = gpu.check().unwrap_err().to_string();
     assert!(error.contains(&gpu.adapter()), "{error}");
     assert!(gpu.check().is_err());
+}
+
+#[path = "../no_gpu.rs"]
+#[allow(dead_code, reason = "only the choice is tried")]
+mod absent;
+
+/// A kelir without its GPU backend draws natively, and says what builds one where the GPU is asked for.
+#[test]
+fn a_build_without_a_gpu_says_so() {
+    assert!(absent::choose(Backend::Auto).unwrap().is_none());
+    assert!(absent::choose(Backend::Cpu).unwrap().is_none());
+    let message = absent::choose(Backend::Gpu).err().unwrap().to_string();
+    assert!(message.contains("cargo xtask release") && message.contains("serve --gpu"), "{message}");
 }

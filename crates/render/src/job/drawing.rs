@@ -1,19 +1,20 @@
 //! A job under way: the one path from a scene to codes and to files, for studies and for the command line.
 
-use kelir_scene::{Masks, Theatre};
+use kelir_scene::Scene;
 
 use super::{Blob, Job, Output};
-use crate::{Frame, Meter, RenderError, Renderer, Stats, Technique, encode, renderer};
+use crate::subject::{Staged, Subject};
+use crate::{Frame, Meter, RenderError, Renderer, Stats, encode};
 
 /// A job being drawn, frame by frame; it keeps what it built between frames.
-pub struct Drawing<'j> {
-    pub(super) job: &'j mut Job,
-    renderer: Box<dyn Renderer>,
+pub struct Drawing<'j, S: Staged = Scene> {
+    pub(super) job: &'j mut Job<S>,
+    renderer: Box<dyn Renderer<S::Subject>>,
     white: f64,
     codes: Vec<u32>,
     /// What `codes` show.
-    last: Option<Theatre>,
-    masks: Masks,
+    last: Option<S::Subject>,
+    kept: S::Kept,
 }
 
 /// A frame that was drawn.
@@ -23,21 +24,21 @@ pub struct Drawn {
     pub repeated: bool,
     /// What was done and skipped.
     pub stats: Stats,
-    /// The image in linear light that the codes were made from: for Monte Carlo and for what a camera takes.
+    /// The image in linear light that the codes were made from: for the ground truth and for what a camera takes.
     pub linear: Option<Frame>,
 }
 
-impl<'j> Drawing<'j> {
+impl<'j, S: Staged> Drawing<'j, S> {
     /// Opens the renderer and sets the exposure. Errors: as [`Job::check`]; an animation of a scene without a timeline, an impossible
     /// view, no adapter.
-    pub fn open(job: &'j mut Job) -> Result<Self, RenderError> {
+    pub fn open(job: &'j mut Job<S>) -> Result<Self, RenderError> {
         job.check()?;
         job.frames()?;
-        let renderer = renderer(&job.technique, job.backend)?;
+        let renderer = S::renderer(&job.technique, job.backend)?;
         job.view.check(&job.scene.still())?;
         let white = job.exposure.white(&job.scene, &job.view, job.time_s);
         let codes = vec![0; job.view.size[0] * job.view.size[1]];
-        Ok(Self { job, renderer, white, codes, last: None, masks: Masks::default() })
+        Ok(Self { job, renderer, white, codes, last: None, kept: S::Kept::default() })
     }
 
     /// The radiance shown as white.
@@ -61,38 +62,36 @@ impl<'j> Drawing<'j> {
     }
 
     /// What frame `index` shows.
-    pub(super) fn theatre(&mut self, index: usize) -> Theatre {
+    pub(super) fn subject(&mut self, index: usize) -> S::Subject {
         let Job { scene, output, time_s, .. } = &*self.job;
         match (output, scene.timeline(), time_s) {
-            (Output::Animation, Some(timeline), _) => {
-                scene.theatre_at(timeline.frame_time_s(index), &mut self.masks)
-            }
-            (_, _, Some(time_s)) => scene.theatre_at(*time_s, &mut self.masks),
+            (Output::Animation, Some(timeline), _) => scene.at(timeline.frame_time_s(index), &mut self.kept),
+            (_, _, Some(time_s)) => scene.at(*time_s, &mut self.kept),
             _ => scene.still(),
         }
     }
 
     /// Draws frame `index`, 0 for a still. Errors: what the technique can't draw.
     pub fn frame(&mut self, index: usize) -> Result<Drawn, RenderError> {
-        let theatre = self.theatre(index);
-        if self.last.as_ref().is_some_and(|last| last.same_staging(&theatre)) {
+        let subject = self.subject(index);
+        if self.last.as_ref().is_some_and(|last| last.same_staging(&subject)) {
             return Ok(Drawn { repeated: true, ..Drawn::default() });
         }
         self.last = None;
         let (view, camera) = (self.job.view, self.job.camera);
-        // Display codes alone would not say how sure Monte Carlo is of them.
-        let drawn = if camera.is_some() || matches!(self.job.technique, Technique::Mc(_)) {
-            let mut frame = self.renderer.radiance(&theatre, &view)?;
+        // Display codes alone would not say how sure the ground truth is of them.
+        let drawn = if camera.is_some() || self.job.technique.is_truth() {
+            let mut frame = self.renderer.radiance(&subject, &view)?;
             self.codes = match camera {
                 Some(camera) => camera.expose(&frame, self.white)?,
                 None => encode::display(&frame, self.white),
             };
             Drawn { stats: std::mem::take(&mut frame.stats), linear: Some(frame), repeated: false }
         } else {
-            let stats = self.renderer.display(&theatre, &view, self.white, &mut self.codes)?;
+            let stats = self.renderer.display(&subject, &view, self.white, &mut self.codes)?;
             Drawn { stats, ..Drawn::default() }
         };
-        self.last = Some(theatre);
+        self.last = Some(subject);
         Ok(drawn)
     }
 
@@ -102,7 +101,7 @@ impl<'j> Drawing<'j> {
     }
 
     /// What the last frame drawn shows.
-    pub(super) fn shown(&self) -> Option<&Theatre> {
+    pub(super) fn shown(&self) -> Option<&S::Subject> {
         self.last.as_ref()
     }
 
@@ -117,7 +116,7 @@ impl<'j> Drawing<'j> {
 
     /// Frame `index` in linear light, with all layers; before any camera.
     pub fn radiance(&mut self, index: usize) -> Result<Frame, RenderError> {
-        let theatre = self.theatre(index);
-        self.renderer.radiance(&theatre, &self.job.view)
+        let subject = self.subject(index);
+        self.renderer.radiance(&subject, &self.job.view)
     }
 }

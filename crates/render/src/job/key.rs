@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use super::Job;
+use crate::subject::Staged;
 use crate::{Backend, RenderError, Technique, renderer};
 use kelir_jcs::{canonical, exact};
 
@@ -18,7 +19,7 @@ struct Revisions {
 
 const NOW: Revisions = Revisions { shared: crate::REVISION, of: Technique::revision };
 
-impl Job {
+impl<S: Staged> Job<S> {
     /// SHA-256 of the preimage, hexadecimal: what is drawn once for it need not be drawn again. Errors: as [`Job::preimage_for`].
     pub fn key(&self) -> Result<String, RenderError> {
         Ok(hex::encode(Sha256::digest(self.preimage_for(self.scene.sha256())?)))

@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use kelir_scene::{Ambient, Theatre};
 use kelir_vision::errors::{Errors, errors};
 use serde::{Serialize, Serializer, ser::SerializeStruct};
 
 use super::Drawing;
-use crate::irradiance::UnitRows;
-use crate::{Frame, RenderError, Technique, View, albedo, penumbra, renderer};
+use crate::albedo::PixelAlbedo;
+use crate::subject::{Staged, Subject};
+use crate::{Frame, RenderError, Technique};
 
 /// Error of the irradiance against a reference, in units of the brightest unshadowed point.
 #[derive(Clone, Debug, Serialize)]
@@ -27,7 +27,7 @@ pub struct Measured {
     pub floor: Option<f64>,
 }
 
-/// Monte Carlo's own standard error of the irradiance, in units of the brightest unshadowed point.
+/// The ground truth's own standard error of the irradiance, in units of the brightest unshadowed point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StandardError {
     /// Root mean square over the sampled pixels and channels of all frames; elsewhere it is exactly 0.
@@ -36,28 +36,22 @@ pub struct StandardError {
     pub max: f64,
 }
 
-/// Sums of the standard errors in a frame's SE layers.
+/// Sums of the standard errors in frames.
 #[derive(Default)]
 pub(crate) struct Spread {
     squares: f64,
     count: usize,
     max: f64,
-    /// Whether there were SE layers at all.
+    /// Whether any frame had them.
     known: bool,
 }
 
 impl Spread {
     /// Adds the pixels that `counted` takes, as irradiance.
-    pub(crate) fn add(
-        &mut self,
-        frame: &Frame,
-        albedo: &albedo::PixelAlbedo,
-        counted: impl Fn(usize, f64) -> bool,
-    ) {
-        for (c, name) in ["SE.R", "SE.G", "SE.B"].iter().enumerate() {
-            let Some(layer) = frame.layers.iter().find(|l| l.name == *name) else { continue };
+    pub(crate) fn add(&mut self, frame: &Frame, albedo: &PixelAlbedo, counted: &dyn Fn(usize, f64) -> bool) {
+        for (c, errors) in frame.standard_error.iter().flatten().enumerate() {
             self.known = true;
-            for (k, se) in layer.values.iter().enumerate() {
+            for (k, se) in errors.iter().enumerate() {
                 let se = f64::from(*se) * PI / f64::from(albedo.at(c, k));
                 if se.is_finite() && counted(k, se) {
                     self.squares += se * se;
@@ -90,7 +84,7 @@ pub(crate) fn named<S: Serializer>(errors: &Errors, serializer: S) -> Result<S::
 }
 
 /// Irradiance at the back of the screen and at its front the albedo: E = π L / albedo, NaN where the screen is black.
-pub(crate) fn irradiance(frame: &Frame, albedo: &albedo::PixelAlbedo) -> Vec<f64> {
+pub(crate) fn irradiance(frame: &Frame, albedo: &PixelAlbedo) -> Vec<f64> {
     let channel = |c: usize| {
         frame.radiance[c]
             .iter()
@@ -101,67 +95,58 @@ pub(crate) fn irradiance(frame: &Frame, albedo: &albedo::PixelAlbedo) -> Vec<f64
 }
 
 /// Draws `frames` of `drawing` in linear light, and the same with `reference`. `progress` takes how many are done.
-pub(super) fn measure(
-    drawing: &mut Drawing<'_>,
+pub(super) fn measure<S: Staged>(
+    drawing: &mut Drawing<'_, S>,
     reference: &Technique,
     frames: Vec<usize>,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Measured, RenderError> {
     let view = drawing.job.view;
-    let mut truth = renderer(reference, drawing.job.backend)?;
-    let (mut ours, mut theirs, mut penumbra) = (Vec::new(), Vec::new(), Vec::new());
-    let mut variance = Spread::default();
-    let mut full_scale = 0f64;
+    let mut truth = S::renderer(reference, drawing.job.backend)?;
+    let mut comparison = Comparison::default();
     for (k, frame) in frames.iter().enumerate() {
         progress(k);
-        let theatre = drawing.theatre(*frame);
-        full_scale = full_scale.max(brightest(&theatre, &view));
-        let albedo = albedo::on_grid(&theatre.screen, &view);
-        let (a, b) = (drawing.radiance(*frame)?, truth.radiance(&theatre, &view)?);
-        let marked = penumbra::mask(&theatre, &view);
-        let seen: Vec<(f64, f64)> =
-            irradiance(&a, &albedo).into_iter().zip(irradiance(&b, &albedo)).collect();
-        for (i, (a, b)) in seen.iter().enumerate().filter(|(_, (a, b))| a.is_finite() && b.is_finite()) {
-            ours.push(*a);
-            theirs.push(*b);
-            penumbra.push(marked[i % marked.len()]);
-        }
-        variance.add(&b, &albedo, |k, _| marked[k]);
+        let subject = drawing.subject(*frame);
+        let (ours, theirs) = (drawing.radiance(*frame)?, truth.radiance(&subject, &view)?);
+        comparison.full_scale = comparison.full_scale.max(subject.brightest(&view));
+        comparison.add(&ours, &theirs, &subject.albedo(&view), &subject.penumbra(&view));
     }
-    let failed = |e: kelir_vision::errors::ErrorsError| RenderError::Encode(format!("measured error: {e}"));
-    let full_scale = if full_scale > 0.0 { full_scale } else { 1.0 };
-    Ok(Measured {
-        reference: reference.clone(),
-        frames,
-        all: errors(&ours, &theirs, None, full_scale).map_err(failed)?,
-        penumbra: errors(&ours, &theirs, Some(&penumbra), full_scale).map_err(failed)?,
-        floor: variance.known.then(|| variance.root_mean_square() / full_scale),
-    })
+    comparison.finish(reference, frames)
 }
 
-/// The brightest unshadowed irradiance over pixels and channels.
-pub(crate) fn brightest(theatre: &Theatre, view: &View) -> f64 {
-    let lamp = &theatre.lamp;
-    let units: Vec<_> = lamp
-        .emitters
-        .iter()
-        .map(|e| (e.radiance, UnitRows::new(&e.shape, lamp.position_m, &theatre.screen, view.size)))
-        .collect();
-    let dome = match theatre.ambient {
-        Ambient::Dome { radiance } => radiance.map(|l| l * PI),
-        _ => [0.0; 3],
-    };
-    let mut unit = vec![0.0; view.size[0]];
-    let mut most = 0f64;
-    for j in 0..view.size[1] {
-        let mut sums = vec![dome; view.size[0]];
-        for (radiance, rows) in &units {
-            rows.row(j, &mut unit);
-            for (sum, unit) in sums.iter_mut().zip(&unit) {
-                (0..3).for_each(|c| sum[c] += radiance[c] * unit);
-            }
+/// Irradiances of both sides, frame after frame, where both can be read.
+#[derive(Default)]
+struct Comparison {
+    ours: Vec<f64>,
+    theirs: Vec<f64>,
+    penumbra: Vec<bool>,
+    /// Of the reference, over penumbra.
+    variance: Spread,
+    full_scale: f64,
+}
+
+impl Comparison {
+    fn add(&mut self, ours: &Frame, theirs: &Frame, albedo: &PixelAlbedo, marked: &[bool]) {
+        let seen = irradiance(ours, albedo).into_iter().zip(irradiance(theirs, albedo));
+        for (i, (a, b)) in seen.enumerate().filter(|(_, (a, b))| a.is_finite() && b.is_finite()) {
+            self.ours.push(a);
+            self.theirs.push(b);
+            self.penumbra.push(marked[i % marked.len()]);
         }
-        most = sums.iter().flatten().copied().fold(most, f64::max);
+        self.variance.add(theirs, albedo, &|k, _| marked[k]);
     }
-    most
+
+    fn finish(self, reference: &Technique, frames: Vec<usize>) -> Result<Measured, RenderError> {
+        let Self { ours, theirs, penumbra, variance, full_scale } = self;
+        let failed =
+            |e: kelir_vision::errors::ErrorsError| RenderError::Encode(format!("measured error: {e}"));
+        let full_scale = if full_scale > 0.0 { full_scale } else { 1.0 };
+        Ok(Measured {
+            reference: reference.clone(),
+            frames,
+            all: errors(&ours, &theirs, None, full_scale).map_err(failed)?,
+            penumbra: errors(&ours, &theirs, Some(&penumbra), full_scale).map_err(failed)?,
+            floor: variance.known.then(|| variance.root_mean_square() / full_scale),
+        })
+    }
 }

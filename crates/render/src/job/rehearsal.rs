@@ -1,9 +1,8 @@
 //! A job tried in a small size: what would keep it from being drawn is found within moments.
 
-use kelir_scene::Scene;
-
 use super::{Drawing, Job, measure};
-use crate::{RenderError, Technique};
+use crate::RenderError;
+use crate::subject::{Staged, Subject};
 
 /// Pixels of width that are drawn.
 const WIDTH: usize = 64;
@@ -16,7 +15,7 @@ const FRAMES: usize = 48;
 /// last, and others evenly between. The scene comes back for the next job.
 ///
 /// Errors: as [`super::run`].
-pub fn rehearse(mut job: Job) -> (Scene, Result<(), RenderError>) {
+pub fn rehearse<S: Staged>(mut job: Job<S>) -> (S, Result<(), RenderError>) {
     let drawn = possible(&job).and_then(|frames| {
         shrink(&mut job);
         draw(&mut job, frames)
@@ -25,25 +24,23 @@ pub fn rehearse(mut job: Job) -> (Scene, Result<(), RenderError>) {
 }
 
 /// How many frames the job has, if its settings and its view at full size are possible.
-fn possible(job: &Job) -> Result<usize, RenderError> {
+fn possible<S: Staged>(job: &Job<S>) -> Result<usize, RenderError> {
     job.check()?;
     job.view.check(&job.scene.still())?;
     job.frames()
 }
 
-fn shrink(job: &mut Job) {
-    let screen = job.scene.still().screen;
+fn shrink<S: Staged>(job: &mut Job<S>) {
+    let [width_m, height_m] = job.scene.still().sides_m();
     let width = WIDTH.min(job.view.size[0]);
-    let height = (width as f64 * screen.height_m / screen.width_m).round().max(1.0);
+    let height = (width as f64 * height_m / width_m).round().max(1.0);
     job.view.size = [width, height as usize];
     for technique in std::iter::once(&mut job.technique).chain(&mut job.reference) {
-        if let Technique::Mc(knobs) = technique {
-            (knobs.spp, knobs.target_error, knobs.time_limit_s) = (knobs.spp.min(SPP), None, None);
-        }
+        technique.sample_at_most(SPP);
     }
 }
 
-fn draw(job: &mut Job, frames: usize) -> Result<(), RenderError> {
+fn draw<S: Staged>(job: &mut Job<S>, frames: usize) -> Result<(), RenderError> {
     let reference = job.reference.clone();
     let mut drawing = Drawing::open(job)?;
     let drawn = frames.min(FRAMES);

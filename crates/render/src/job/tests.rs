@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
+mod card;
+
 use std::collections::BTreeMap;
 
 use kelir_scene::{Assets, Masks};

@@ -94,7 +94,7 @@ fn curve(
         .iter()
         .map(|(value, knobs)| {
             let frame = draw(theatre, *knobs)?;
-            Ok(truth.error(*value, |k| f64::from(frame.layers[0].values[k])))
+            Ok(truth.error(*value, |k| f64::from(frame.visibilities[0].values[k])))
         })
         .collect::<Result<_, RenderError>>()?;
     Ok(Curve { name: name.into(), knob, default, of, steps })

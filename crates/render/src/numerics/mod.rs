@@ -19,7 +19,7 @@ pub use emitters::{EmitterErrors, emitters};
 use crate::oracle::{self, Point};
 use crate::pa::plan::Plan;
 use crate::pa::table::Table;
-use crate::project::pixel_m;
+use crate::project::{is_tilted, pixel_m};
 use crate::{Frame, RenderError, Renderer, View, encode, irradiance, pa, white};
 use variants::{Blocks, Corners, Float, Footprint};
 
@@ -95,8 +95,8 @@ pub fn measure(case: &Case) -> Result<Row, RenderError> {
     };
     for ([i, j], truth) in pixels.iter().zip(&truths) {
         let k = j * SIZE[0] + i;
-        for (layer, v) in frame.layers.iter().zip(truth) {
-            row.product = worst(row.product, f64::from(layer.values[k]) - v);
+        for (drawn, v) in frame.visibilities.iter().zip(truth) {
+            row.product = worst(row.product, f64::from(drawn.values[k]) - v);
         }
         let p = pixel_m(&theatre.screen, SIZE, *i as f64, *j as f64);
         let emitters = theatre.lamp.emitters.iter().zip(truth);
@@ -127,7 +127,7 @@ fn truth(theatre: &Theatre, point: Point) -> Vec<f64> {
 }
 
 fn impossible(frame: &Frame) -> usize {
-    let values = frame.layers.iter().flat_map(|l| &l.values);
+    let values = frame.visibilities.iter().flat_map(|v| &v.values);
     values.filter(|v| !(0.0..=1.0).contains(*v)).count()
 }
 
@@ -187,7 +187,7 @@ fn compare(
     let narrow = error(&Table::new(mask, 0, false, None));
     let wide = Table::new(mask, 0, true, None);
     let exact = error(&wide);
-    let corners = if pa::plan::is_tilted(plane) {
+    let corners = if is_tilted(plane) {
         f64::NAN
     } else {
         let of = |e: &kelir_scene::Emitter| match e.shape {

@@ -5,7 +5,7 @@ use kelir_scene::{Mask, Plane, Theatre};
 
 use crate::pa::table::{Sums, Table};
 use crate::pa::tilted::parts;
-use crate::pa::window::Windows;
+use crate::project::window::Windows;
 use crate::project::{ShadowBox, pixel_m};
 use crate::{Pixel, View};
 

@@ -73,6 +73,34 @@ impl Technique {
         }
     }
 
+    /// Whether it is the ground truth: unbiased, with a standard error for every pixel, so that others are measured against it.
+    pub fn is_truth(&self) -> bool {
+        match self {
+            Self::Mc(_) => true,
+            Self::Pa(_) | Self::Points(_) | Self::Pcss(_) | Self::Oracle(_) => false,
+        }
+    }
+
+    /// How much the ground truth knows: samples a pixel and emitter, the more, the less it errs. 0 for what is no ground truth.
+    pub fn truth_samples(&self) -> u32 {
+        match self {
+            Self::Mc(knobs) => knobs.spp,
+            Self::Pa(_) | Self::Points(_) | Self::Pcss(_) | Self::Oracle(_) => 0,
+        }
+    }
+
+    /// The ground truth, where nobody asks for more of it.
+    pub fn truth() -> Self {
+        Self::Mc(mc::Knobs::default())
+    }
+
+    /// From now on the ground truth takes at most so many samples a pixel, and what else draws is as it was.
+    pub(crate) fn sample_at_most(&mut self, samples: u32) {
+        if let Self::Mc(knobs) = self {
+            (knobs.spp, knobs.target_error, knobs.time_limit_s) = (knobs.spp.min(samples), None, None);
+        }
+    }
+
     /// Errors: a knob out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
         match self {

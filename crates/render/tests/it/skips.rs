@@ -72,8 +72,7 @@ fn second(drawing: &mut dyn Renderer, theatre: &Theatre, skip: bool) -> Option<(
 /// All floats of a frame, as bits.
 fn bits(drawing: &mut dyn Renderer, theatre: &Theatre, skip: bool) -> Vec<u32> {
     let frame = drawing.radiance(theatre, &View { skip, ..VIEW }).unwrap();
-    let layers = frame.layers.iter().map(|l| &l.values);
-    frame.radiance.iter().chain(layers).flatten().map(|v| v.to_bits()).collect()
+    frame.channels().flat_map(|(_, values)| values).map(|v| v.to_bits()).collect()
 }
 
 fn same_bytes(name: &str, theatre: &Theatre, technique: &Technique, backend: Backend) -> Option<Stats> {

@@ -69,12 +69,26 @@ fn refused_once(edits: &[(&str, &str)], files: &Files, wanted: &str) {
     assert!(found.len() == 1 && found[0].contains(wanted), "{wanted:?} for {edits:?} in {found:#?}");
 }
 
+/// What there is no drawing for is refused by name, whatever sections it has; a theatre may say that it is one.
+#[test]
+fn another_subject_cannot_be_drawn_yet() {
+    for (subject, what) in [("stage", "a stage of meshes"), ("plate", "a photographed shadow")] {
+        let found = messages(&format!("subject = \"{subject}\"\n[meshes]\nfile = \"a.glb\"\n"));
+        let wanted = format!(
+            "scenes/test.toml:1:11: subject = \"{subject}\": {what} can't be drawn yet, only a \"theatre\""
+        );
+        assert_eq!(found, [wanted]);
+    }
+    assert!(parse(&format!("subject = \"theatre\"\n{SCENE}"), &files()).is_ok());
+}
+
 #[test]
 fn each_rule_of_a_scene_is_kept() {
     let position = "[0.0, 0.0, -0.2]";
     let emitter = "name = \"inner\"\nshape = \"rectangle\"\nsize_m = [0.02, 0.02]";
     #[rustfmt::skip]
     let cases: &[(&str, &str, &str)] = &[
+        ("[screen]", "subject = \"theater\"\n[screen]", "must be one of theatre, stage and plate (did you mean theatre?)"),
         ("width_m = 1.6", "width_m = -1.6", "screen.width_m = -1.6: a length is"),
         ("width_m = 1.6", "width_m = 1e-300", "screen.width_m = 1e-300: a length is"),
         ("width_m = 1.6", "width_m = \"wide\"", "screen.width_m = \"wide\": a number is wanted here, not a string"),

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use kelir_plot::{Axis, Figure, Point, Rule, Series, svg};
-use kelir_render::accuracy::{CaseReport, Measured, Model, Options, Outcome, Report, all, measure};
-use kelir_render::{Backend, Pixel, Technique, View, file};
+use kelir_render::accuracy::{CaseReport, Measured, Options, Outcome, Report, all, measure};
+use kelir_render::{Backend, Pixel, View, VisibilityModel, file};
 use kelir_server::shipped;
 
 use crate::commands::drawing::{PixelName, parse_backend, parse_size, render_error};
@@ -45,7 +45,7 @@ pub struct Args {
     #[arg(long, default_value_t = 1e-4)]
     tolerance: f64,
     #[command(flatten)]
-    figures: Figures,
+    pub(super) figures: Figures,
     /// Also draw error against time, as SVG.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -139,8 +139,8 @@ fn text(report: &Report) -> String {
         100.0 * report.penumbra_pixels as f64 / pixels as f64,
         adapters.join("; "),
         report.runs,
-        spp(report),
-        seed(report),
+        reference.technique.truth_samples(),
+        reference.technique.stand()["seed"],
         reference.seconds,
         short(reference.floor),
     );
@@ -200,20 +200,6 @@ fn text(report: &Report) -> String {
     text
 }
 
-fn spp(report: &Report) -> u32 {
-    match &report.reference.technique {
-        Technique::Mc(knobs) => knobs.spp,
-        _ => 0,
-    }
-}
-
-fn seed(report: &Report) -> u64 {
-    match &report.reference.technique {
-        Technique::Mc(knobs) => knobs.seed,
-        _ => 0,
-    }
-}
-
 /// The second table: model and numerical error apart.
 fn on_crops(report: &Report) -> String {
     let oracle = &report.oracle;
@@ -229,7 +215,7 @@ fn on_crops(report: &Report) -> String {
         .iter()
         .filter_map(|result| {
             let crops = measured(result)?.crops.as_ref()?;
-            let geometric = crops.model == Model::Geometric;
+            let geometric = crops.model == VisibilityModel::Geometric;
             Some(vec![
                 series_name(result, report),
                 result.case.knob.clone(),

@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use anyhow::{Context, Result, ensure};
-use kelir_render::Isa;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -37,7 +36,7 @@ pub struct Args {
     #[arg(long)]
     alone: bool,
     #[command(flatten)]
-    figures: Figures,
+    pub(super) figures: Figures,
 }
 
 /// Starts that are measured at each number of sessions.
@@ -71,7 +70,6 @@ pub fn run(args: &Args) -> Result<()> {
     // One thread asks: what a second one would take is the servers'.
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let figures = runtime.block_on(measure(args))?;
-    args.figures.say(&format!("Instruction set {}; {} threads.", Isa::detect().name(), threads()))?;
     args.figures.say(&table(
         &["what", "a second", "p50 ms", "p99 ms"],
         &figures.iter().map(Line::row).collect::<Vec<_>>(),
@@ -95,10 +93,6 @@ fn ratios(figures: &[Line]) -> Option<[f64; 3]> {
         of("answers, kelir").zip(of("answers, Express")).map(|(own, rival)| own / rival).collect();
     ratios.sort_by(f64::total_cmp);
     Some([*ratios.first()?, *ratios.get(ratios.len() / 2)?, *ratios.last()?])
-}
-
-fn threads() -> usize {
-    std::thread::available_parallelism().map_or(1, |n| n.get())
 }
 
 async fn measure(args: &Args) -> Result<Vec<Line>> {

@@ -34,7 +34,7 @@ pub struct Args {
     #[arg(long, default_value_t = 1_000_000)]
     rows: u64,
     #[command(flatten)]
-    figures: Figures,
+    pub(super) figures: Figures,
 }
 
 const CONDITIONS: usize = 6;

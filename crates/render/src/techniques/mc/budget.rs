@@ -3,9 +3,7 @@
 
 use std::time::Instant;
 
-use super::estimate::Row;
-use super::points::Points;
-use super::{Knobs, REPLICATES};
+use super::{Knobs, Points, REPLICATES, Row};
 use crate::RenderError;
 
 /// Most points per replicate: what [`Knobs::spp`] may ask for.

@@ -5,48 +5,16 @@ use glam::DVec3;
 use kelir_scene::*;
 
 use super::*;
-use crate::irradiance;
-
-/// A half-plane: opaque for x < 0.
-fn edge(channels: usize) -> Mask {
-    let (w, h) = (64, 36);
-    let code = |k: usize| if k % w < w / 2 { 0 } else { 255 };
-    Mask::new(w, h, channels, Texels::U8((0..w * h * channels).map(code).collect()))
-}
-
-fn theatre(mask: Mask, ambient: Ambient) -> Theatre {
-    let emitter = |name: &str, side: f64, radiance: f64| Emitter {
-        name: name.into(),
-        shape: EmitterShape::Rectangle { size_m: [side, side] },
-        radiance: [radiance, 0.8 * radiance, 0.5 * radiance],
-    };
-    Theatre {
-        screen: Screen { width_m: 1.6, height_m: 0.9, albedo: Albedo::Uniform([0.8, 0.7, 0.6]) },
-        lamp: Lamp {
-            position_m: DVec3::new(0.05, -0.02, -1.5),
-            emitters: vec![emitter("inner", 0.02, 2000.0), emitter("outer", 0.1, 40.0)],
-        },
-        ambient,
-        planes: vec![Plane {
-            mask: Arc::new(mask),
-            centre_m: DVec3::new(0.0, 0.0, -0.4),
-            size_m: [1.2, 0.675],
-            tilt_deg: [0.0; 2],
-        }],
-        exposure: Exposure::Auto,
-    }
-}
-
-fn view(pixel: Pixel) -> View {
-    View { size: [48, 27], pixel, skip: true }
-}
+use crate::trace::gpu::WGSL;
+use crate::trace::tests::{edge, theatre, view};
+use crate::{Pixel, irradiance};
 
 fn draw(theatre: &Theatre, view: &View, spp: u32, seed: u64) -> Frame {
     renderer(&Knobs { spp, seed, ..Knobs::default() }, Backend::Cpu).unwrap().radiance(theatre, view).unwrap()
 }
 
-fn layer<'a>(frame: &'a Frame, name: &str) -> &'a [f32] {
-    &frame.layers.iter().find(|l| l.name == name).unwrap().values
+fn channel<'a>(frame: &'a Frame, name: &str) -> &'a [f32] {
+    frame.channels().find(|(n, _)| n == name).unwrap().1
 }
 
 /// What the light from `q` to `p` keeps on its way through all planes, texel by texel in f64.
@@ -123,7 +91,7 @@ fn disks_tilts_and_the_dome_agree_with_brute_force() {
     for (k, name) in ["Virr.inner", "Virr.outer", "Virr.dome"].into_iter().enumerate() {
         let bare = Theatre { planes: vec![], ..scene.clone() };
         for pixel in [[3, 4], [20, 10], [24, 13], [27, 20], [33, 5], [22, 26], [40, 22]] {
-            let value = f64::from(layer(&frame, name)[pixel[1] * view.size[0] + pixel[0]]);
+            let value = f64::from(channel(&frame, name)[pixel[1] * view.size[0] + pixel[0]]);
             let lit = brute(&bare, &view, k, pixel);
             worst = worst.max((value - brute(&scene, &view, k, pixel) / lit).abs());
             control = control.max((value - brute(&other, &view, k, pixel) / lit).abs());
@@ -145,7 +113,7 @@ fn bounds_hold_for_steep_planes() {
         let skipped = draw(&scene, &view, 64, 1);
         let all = draw(&scene, &View { skip: false, ..view }, 64, 1);
         assert_eq!(skipped.radiance, all.radiance, "{tilt:?}");
-        let visibility = layer(&skipped, "Virr.outer");
+        let visibility = channel(&skipped, "Virr.outer");
         assert!(visibility.iter().all(|v| (-1e-3..1.02).contains(v)), "{tilt:?}");
         assert!(visibility.iter().any(|v| *v < 0.99), "{tilt:?}");
     }
@@ -165,7 +133,7 @@ fn agrees_with_brute_force_within_its_standard_error() {
             * (0..2)
                 .map(|e| theatre.lamp.emitters[e].radiance[0] * brute(&theatre, &view, e, [i, j]))
                 .sum::<f64>();
-        let (value, se) = (f64::from(frame.radiance[0][k]), f64::from(layer(&frame, "SE.R")[k]));
+        let (value, se) = (f64::from(frame.radiance[0][k]), f64::from(channel(&frame, "SE.R")[k]));
         // The midpoint sum errs by about 1/400 of a penumbra that crosses the emitter, and 1e-6 elsewhere.
         let slack = if se > 0.0 { 2e-3 } else { 3e-6 };
         assert!(
@@ -188,28 +156,11 @@ fn same_bytes_whatever_the_threads_and_the_skipping() {
         let single = one.install(|| draw(&theatre, &view, 40, 3));
         for other in [&unskipped, &single] {
             assert_eq!(all.radiance, other.radiance);
-            all.layers
-                .iter()
-                .zip(&other.layers)
-                .for_each(|(a, b)| assert_eq!(a.values, b.values, "{}", a.name));
+            assert!(all.channels().eq(other.channels()));
         }
         assert_eq!(all.stats.counts["spp"], 48);
         assert!(unskipped.stats.counts["samples"] > all.stats.counts["samples"]);
         assert_ne!(all.radiance, draw(&theatre, &view, 40, 4).radiance, "the seed must matter");
-    }
-}
-
-/// The narrow and wide instruction sets give the same sums.
-#[test]
-fn vector_width_does_not_matter() {
-    let theatre = theatre(edge(3), Ambient::None);
-    let view = view(Pixel::Area);
-    let masks = [Arc::new(Padded::new(&theatre.planes[0].mask))];
-    let plan = plan::Plan::new(&theatre, &view, &masks, false).unwrap();
-    let points = Points::new(1, 37);
-    let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..1 };
-    for i in 20..28 {
-        assert_eq!(sampler.sums::<3>(1, i, 13, [0.0; 3]), sampler.sums_any::<3>(1, i, 13, [0.0; 3]));
     }
 }
 
@@ -221,7 +172,7 @@ fn the_standard_error_is_the_error() {
     let (mut sum, mut n) = (0.0, 0);
     for seed in 0..20 {
         let frame = draw(&theatre, &view, 64, seed);
-        for (k, se) in layer(&frame, "SE.G").iter().enumerate().filter(|(_, se)| **se > 0.0) {
+        for (k, se) in channel(&frame, "SE.G").iter().enumerate().filter(|(_, se)| **se > 0.0) {
             sum += f64::from((frame.radiance[1][k] - truth.radiance[1][k]) / se).powi(2);
             n += 1;
         }
@@ -265,9 +216,8 @@ fn a_target_error_is_reached_and_replayed() {
 }
 
 fn on_gpu(theatre: &Theatre, view: &View, wgsl: &str) -> Frame {
-    let gpu = crate::gpu::choose(Backend::Gpu).expect("the tests need a Vulkan adapter").unwrap();
-    let sampler = gpu::Sampler::new(gpu, wgsl).unwrap();
-    Mc::new(Knobs { spp: 256, seed: 3, ..Knobs::default() }, Some(sampler)).radiance(theatre, view).unwrap()
+    let knobs = Knobs { spp: 256, seed: 3, ..Knobs::default() };
+    Mc::new(knobs, Tracer::with_shader(wgsl)).radiance(theatre, view).unwrap()
 }
 
 /// Largest difference of any channel of radiance in units of the brightest unshadowed pixel of `a`'s red.
@@ -290,138 +240,23 @@ fn gpu_agrees_with_cpu() {
         [(theatre(edge(1), Ambient::None), Pixel::Centre), (several, Pixel::Area), (crooked(), Pixel::Area)];
     let bare = Theatre { planes: vec![], ..scenes[0].0.clone() };
     let view_all = View { skip: false, ..view(Pixel::Area) };
-    assert!(distance(&draw(&bare, &view_all, 256, 3), &on_gpu(&bare, &view_all, gpu::WGSL)) < 1e-6);
+    assert!(distance(&draw(&bare, &view_all, 256, 3), &on_gpu(&bare, &view_all, WGSL)) < 1e-6);
     for (theatre, pixel) in scenes {
         let view = view(pixel);
         let cpu = draw(&theatre, &view, 256, 3);
-        let gpu = on_gpu(&theatre, &view, gpu::WGSL);
+        let gpu = on_gpu(&theatre, &view, WGSL);
         assert!(distance(&cpu, &gpu) < 5e-4, "{}", distance(&cpu, &gpu));
-        for layer in &cpu.layers {
-            let other = self::layer(&gpu, &layer.name);
-            let worst = layer.values.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-            assert!(worst < 5e-3, "{}: {worst}", layer.name);
+        for (name, values) in cpu.channels().filter(|(name, _)| name.contains('.')) {
+            let worst =
+                values.iter().zip(channel(&gpu, &name)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(worst < 5e-3, "{name}: {worst}");
         }
         assert_ne!(
             cpu.radiance, gpu.radiance,
             "the GPU's sums are f32, the CPU's f64: equal bits were not drawn twice"
         );
-        let wrong = gpu::WGSL.replace("(1.0 / (w * w))", "(0.98 / (w * w))");
+        let wrong = WGSL.replace("(1.0 / (w * w))", "(0.98 / (w * w))");
         assert!(distance(&cpu, &on_gpu(&theatre, &view, &wrong)) > 5e-3);
-    }
-}
-
-#[test]
-fn structs_are_laid_out_as_the_shader_expects() {
-    use crate::gpu::tests::same_layout;
-    same_layout!(
-        gpu::WGSL,
-        "Params",
-        gpu::Params { width, height, samples, jobs, planes, seed, area, channels, scrambled }
-    );
-    same_layout!(gpu::WGSL, "Job", estimate::Job { x, y, emitter, first, end, v0_r, v0_g, v0_b });
-    same_layout!(gpu::WGSL, "Axis", gpu::GpuAxis { offset, low, high, anchor });
-    same_layout!(gpu::WGSL, "Emitter", gpu::Emitter { side_x, side_y, pixel_x, pixel_y, shape });
-    same_layout!(
-        gpu::WGSL,
-        "Map",
-        gpu::Map {
-            emitter_x,
-            emitter_y,
-            pixel_x,
-            pixel_y,
-            layer,
-            channels,
-            tilted,
-            behind,
-            right_x,
-            right_y,
-            down_x,
-            down_y,
-            normal_x,
-            normal_y,
-        }
-    );
-    same_layout!(gpu::WGSL, "Seen", gpu::GpuSeen { x, y, ratio, rest, depth, along_x, along_y });
-}
-
-/// Two-sided tail of Student's t with 15 degrees of freedom, by the finite sum that odd degrees have.
-fn tail(t: f64) -> f64 {
-    let theta = (t.abs() / 15f64.sqrt()).atan();
-    let (sin, cos) = theta.sin_cos();
-    let (mut term, mut sum) = (1.0, 1.0);
-    for k in 1..=6 {
-        term *= f64::from(2 * k) / f64::from(2 * k + 1) * cos * cos;
-        sum += term;
-    }
-    1.0 - 2.0 / std::f64::consts::PI * (theta + sin * cos * sum)
-}
-
-/// The smallest p over tiles of penumbra pixels, corrected for their number (Šidák): replicates of MC drawn from
-/// `drawn` against the oracle's irradiance of `truth`, whose first emitter gives the same flux.
-fn agreement(truth: &Theatre, drawn: &Theatre, view: &View) -> f64 {
-    let masks = [Arc::new(Padded::new(&drawn.planes[0].mask))];
-    let plan = plan::Plan::new(drawn, view, &masks, false).unwrap();
-    let points = Points::new(11, 256);
-    let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..1 };
-    let (before, after) = (&truth.lamp.emitters[0].shape, &drawn.lamp.emitters[0].shape);
-    let scale = plan.emitters[0].scale / (256.0 * 255.0) * before.area_m2() / after.area_m2();
-    // What a light meter reads: the mean of E over the pixel, over E⁰ at its centre. The edge is vertical, so E has its
-    // kinks along x, where the midpoints are dense.
-    let steps = if view.pixel == Pixel::Area { [512, 2] } else { [1, 1] };
-    let exact = |i: usize, j: usize| {
-        let place = |k: usize, d: usize| (k as f64 + 0.5) / f64::from(steps[d]) - 0.5;
-        let lit = |p| irradiance::unit(before, truth.lamp.position_m, p);
-        let middle = crate::project::pixel_m(&truth.screen, view.size, i as f64, j as f64);
-        let mut sum = 0.0;
-        for k in 0..(steps[0] * steps[1]) as usize {
-            let (x, y) = (k % steps[0] as usize, k / steps[0] as usize);
-            let (x, y) = (i as f64 + place(x, 0), j as f64 + place(y, 1));
-            let p = crate::project::pixel_m(&truth.screen, view.size, x, y);
-            let seen = crate::oracle::visibility(truth, 0, crate::oracle::Point::At(p), 1.0).irradiance[0];
-            sum += seen * lit(p);
-        }
-        sum / f64::from(steps[0] * steps[1]) / lit(middle)
-    };
-    let (mut smallest, mut tiles) = (1f64, 0);
-    for i in 0..view.size[0] {
-        if !(0.02..0.98).contains(&exact(i, 0)) {
-            continue;
-        }
-        for rows in (0..view.size[1]).collect::<Vec<_>>().chunks(9) {
-            let (mut mean, mut known) = ([0f64; REPLICATES], 0.0);
-            for &j in rows {
-                let p = crate::project::pixel_m(&truth.screen, view.size, i as f64, j as f64);
-                let lit = irradiance::unit(before, truth.lamp.position_m, p);
-                let sums = sampler.sums::<1>(0, i, j, [0.0])[0];
-                mean.iter_mut().zip(sums).for_each(|(m, s)| *m += s * scale / lit);
-                known += exact(i, j);
-            }
-            let n = REPLICATES as f64;
-            let average = mean.iter().sum::<f64>() / n;
-            let variance = mean.iter().map(|m| (m - average).powi(2)).sum::<f64>() / (n - 1.0);
-            smallest = smallest.min(tail((average - known) / (variance / n).sqrt()));
-            tiles += 1;
-        }
-    }
-    assert!(tiles >= 12, "{tiles} tiles of penumbra");
-    1.0 - (1.0 - smallest).powi(tiles)
-}
-
-/// The statistical test of the ground truth: t with 15 degrees of freedom on tile means, α = 0.01 over all tiles; a lamp
-/// that is 1 % larger at equal flux fails it.
-#[test]
-fn no_difference_from_the_oracle_but_a_lamp_one_percent_larger() {
-    assert!((tail(2.131_449_5) - 0.05).abs() < 1e-7 && (tail(4.072_765_2) - 0.001).abs() < 1e-8);
-    let mut scene = theatre(edge(1), Ambient::None);
-    scene.lamp.emitters.remove(0);
-    let mut larger = scene.clone();
-    larger.lamp.emitters[0].shape = EmitterShape::Rectangle { size_m: [0.101, 0.101] };
-    for pixel in [Pixel::Centre, Pixel::Area] {
-        let view = View { size: [96, 54], ..view(pixel) };
-        let p = agreement(&scene, &scene, &view);
-        assert!(p > 0.01, "{pixel:?}: p = {p}");
-        let control = agreement(&scene, &larger, &view);
-        assert!(control < 0.01, "{pixel:?}: p = {control}");
     }
 }
 
@@ -438,7 +273,7 @@ fn over_a_pixel_visibility_is_mean_over_mean() {
     let (shape, lamp) = (scene.lamp.emitters[0].shape, scene.lamp.position_m);
     // Mean differences from the definition over all penumbra pixels: of MC, of the oracle, and of two other definitions.
     let (mut sums, mut tested) = ([0.0; 4], 0.0);
-    for (pixel, drawn) in layer(&frame, "Virr.outer").iter().enumerate() {
+    for (pixel, drawn) in channel(&frame, "Virr.outer").iter().enumerate() {
         if !(0.01..0.99).contains(drawn) {
             continue;
         }
@@ -465,13 +300,4 @@ fn over_a_pixel_visibility_is_mean_over_mean() {
     let [mc, oracle, of_ratios, at_centre] = sums.map(|s: f64| (s / tested).abs());
     assert!(tested > 40.0 && mc < 1.5e-5 && oracle < 1e-6, "{tested} {mc:e} {oracle:e}");
     assert!(of_ratios > 4e-5 && at_centre > 4e-5, "{of_ratios:e} {at_centre:e}");
-}
-
-/// What stands in WGSL and in Rust is the same.
-#[test]
-fn constants_are_those_of_the_shader() {
-    use crate::gpu::tests::same_constants;
-    same_constants!(gpu::WGSL, {
-        "FLUSH": native::FLUSH, "REPLICATES": REPLICATES, "workgroup_size": gpu::WORKGROUP,
-    });
 }

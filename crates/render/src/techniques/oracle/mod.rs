@@ -25,7 +25,7 @@ pub use renderer::{BothModels, Oracle};
 pub use visibility::{Point, Visibility, dome, geometric, visibility};
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
-/// draws, in its own files or in what it borrows from another. What was made before is then made anew.
+/// draws, in its own files or in what it shares with others. What was made before is then made anew.
 pub const REVISION: u32 = 1;
 
 /// What can be turned.

@@ -5,7 +5,9 @@ use rayon::prelude::*;
 
 use super::{Knobs, Point, Visibility, visibility};
 use crate::project::pixel_m;
-use crate::{Frame, Layer, Meter, RenderError, Renderer, Stats, View, albedo, ambient, encode, irradiance};
+use crate::{
+    Frame, Meter, RenderError, Renderer, Stats, View, VisibilityModel, albedo, ambient, frame, irradiance,
+};
 
 /// Draws with [`visibility`](fn@visibility) at every pixel.
 #[derive(Debug)]
@@ -148,38 +150,19 @@ impl Oracle {
 }
 
 impl Renderer for Oracle {
-    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
+    fn frame(&mut self, theatre: &Theatre, view: &View, visibilities: bool) -> Result<Frame, RenderError> {
         let values = self.crop(theatre, view, 0..view.size[0], 0..view.size[1])?;
         let radiance = [0, 1, 2].map(|c| values.iter().map(|(l, _)| l[c] as f32).collect());
-        let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
-        let mut layers = Vec::new();
-        for (e, emitter) in theatre.lamp.emitters.iter().enumerate() {
-            for (c, suffix) in [".R", ".G", ".B"].iter().enumerate().take(if coloured { 3 } else { 1 }) {
-                let suffix = if coloured { *suffix } else { "" };
-                layers.push(Layer {
-                    name: format!("Vgeo.{}{suffix}", emitter.name),
-                    values: values.iter().map(|(_, v)| v[e].geometric[c] as f32).collect(),
-                });
-                layers.push(Layer {
-                    name: format!("Virr.{}{suffix}", emitter.name),
-                    values: values.iter().map(|(_, v)| v[e].irradiance[c] as f32).collect(),
-                });
-            }
-        }
+        let by = |model, of: fn(&Visibility) -> [f64; 3]| {
+            let names = frame::emitters(theatre).filter(|_| visibilities);
+            frame::Visibility::each(theatre, names, model, |e, c| {
+                values.iter().map(|(_, v)| of(&v[e])[c] as f32).collect()
+            })
+        };
+        let mut seen = by(VisibilityModel::Geometric, |v| v.geometric);
+        seen.extend(by(VisibilityModel::Irradiance, |v| v.irradiance));
         let stats = Stats { counts: [("pixels".into(), values.len() as u64)].into(), ..Stats::default() };
-        Ok(Frame { size: view.size, radiance, layers, stats })
-    }
-
-    fn display(
-        &mut self,
-        theatre: &Theatre,
-        view: &View,
-        white: f64,
-        out: &mut [u32],
-    ) -> Result<Stats, RenderError> {
-        let frame = self.radiance(theatre, view)?;
-        out.copy_from_slice(&encode::display(&frame, white));
-        Ok(frame.stats)
+        Ok(Frame { size: view.size, radiance, visibilities: seen, standard_error: None, stats })
     }
 
     fn watch(&mut self, meter: &Meter) {

@@ -123,7 +123,10 @@ fn pixel_means_tend_to_the_closed_form() {
 fn draws_frames() {
     let view = crate::View { size: [32, 18], pixel: crate::Pixel::Area, skip: true };
     let frame = Oracle::new(Knobs::default()).radiance(&two_planes(), &view).unwrap();
-    assert_eq!(frame.layers.iter().map(|l| l.name.as_str()).collect::<Vec<_>>(), ["Vgeo.lamp", "Virr.lamp"]);
+    assert_eq!(
+        frame.visibilities.iter().map(crate::Visibility::name).collect::<Vec<_>>(),
+        ["Vgeo.lamp", "Virr.lamp"]
+    );
     let lit = f64::from(frame.radiance[0][0]);
     let p = crate::project::pixel_m(&two_planes().screen, view.size, 0.0, 0.0);
     let e0 = crate::irradiance::unit(&two_planes().lamp.emitters[0].shape, DVec3::new(0.0, 0.0, -1.5), p);

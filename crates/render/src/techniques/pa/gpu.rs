@@ -29,7 +29,7 @@ use super::tiles::Tiles;
 use super::{Knobs, Skips, Weights, shadow_map};
 use crate::encode::Srgb;
 use crate::gpu::Gpu;
-use crate::{Frame, Layer, RenderError, Renderer, Stats, View};
+use crate::{Frame, RenderError, Renderer, Stats, View, Visibility, frame};
 
 use answers::{count, fill, scatter};
 use passes::Passes;
@@ -82,6 +82,11 @@ struct Job<'a> {
     /// Channels of the shading, and of each plane's own shadow.
     shades: usize,
     own_channels: usize,
+}
+
+/// The renderer for `knobs` on `gpu`.
+pub(super) fn renderer(gpu: Gpu, knobs: Knobs) -> Result<Box<dyn Renderer>, RenderError> {
+    Ok(Box::new(OnGpu::new(gpu, knobs, &Shaders::default())?))
 }
 
 impl OnGpu {
@@ -314,28 +319,22 @@ impl OnGpu {
 }
 
 impl Renderer for OnGpu {
-    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
+    fn frame(&mut self, theatre: &Theatre, view: &View, visibilities: bool) -> Result<Frame, RenderError> {
         view.check(theatre)?;
         let pixels = view.size[0] * view.size[1];
-        let kind = if self.knobs.weights == Weights::Area { "Vgeo" } else { "Virr" };
-        let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
         let emitters = theatre.lamp.emitters.len();
-        // All puppets may be off the beam: then one channel answers for the three layers.
+        // All puppets may be off the beam: then one channel answers for the three.
         let channels = Plan::new(&shadow_map::seen(theatre, &self.knobs), view, &self.knobs)?.channels;
         let mut planes = vec![vec![0f32; pixels]; 3 + emitters * channels];
         let stats = self.draw(theatre, view, Sink::Radiance(&mut planes))?;
         let mut planes = planes.into_iter();
         let radiance = [(); 3].map(|()| planes.next().unwrap_or_default());
-        let visibility: Vec<_> = planes.collect();
-        let mut layers = Vec::new();
-        for (e, emitter) in theatre.lamp.emitters.iter().enumerate() {
-            let suffixes: &[&str] = if coloured { &[".R", ".G", ".B"] } else { &[""] };
-            for (c, suffix) in suffixes.iter().enumerate() {
-                let values = visibility[e * channels + c.min(channels - 1)].clone();
-                layers.push(Layer { name: format!("{kind}.{}{suffix}", emitter.name), values });
-            }
-        }
-        Ok(Frame { size: view.size, radiance, layers, stats })
+        let drawn: Vec<_> = planes.collect();
+        let names = frame::emitters(theatre).filter(|_| visibilities);
+        let visibilities = Visibility::each(theatre, names, self.knobs.weights.model(), |e, c| {
+            drawn[e * channels + c.min(channels - 1)].clone()
+        });
+        Ok(Frame { size: view.size, radiance, visibilities, standard_error: None, stats })
     }
 
     fn display(
@@ -346,13 +345,7 @@ impl Renderer for OnGpu {
         out: &mut [u32],
     ) -> Result<Stats, RenderError> {
         view.check(theatre)?;
-        if out.len() != view.size[0] * view.size[1] {
-            let [w, h] = view.size;
-            return Err(RenderError::View(format!("{} pixels given for {w}x{h}", out.len())));
-        }
-        if !(white.is_finite() && white > 0.0) {
-            return Err(RenderError::View(format!("white = {white}: a radiance above 0")));
-        }
+        frame::check_display(view, white, out)?;
         self.draw(theatre, view, Sink::Display { white, out })
     }
 

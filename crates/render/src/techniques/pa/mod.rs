@@ -14,6 +14,7 @@
 
 mod background;
 mod dome;
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod gpu;
 mod kept;
 mod native;
@@ -24,19 +25,18 @@ mod skips;
 pub mod table;
 mod tiles;
 pub(crate) mod tilted;
-pub mod window;
 
 use serde::{Deserialize, Serialize};
 
 use crate::techniques::knobs::{self, Knob, Range};
 
-use crate::{Backend, RenderError, Renderer};
+use crate::{Backend, RenderError, Renderer, VisibilityModel};
 
 pub use native::Native;
 pub use skips::Skips;
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
-/// draws, in its own files or in what it borrows from another. What was made before is then made anew.
+/// draws, in its own files or in what it shares with others. What was made before is then made anew.
 pub const REVISION: u32 = 1;
 
 /// What can be turned.
@@ -135,11 +135,21 @@ pub enum Weights {
     Irradiance,
 }
 
+impl Weights {
+    /// The visibility that the pieces' sum tends to.
+    fn model(self) -> VisibilityModel {
+        match self {
+            Self::Area => VisibilityModel::Geometric,
+            Self::Irradiance => VisibilityModel::Irradiance,
+        }
+    }
+}
+
 /// The renderer for `knobs` on `backend`.
 pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
     knobs.check()?;
     match crate::gpu::choose(backend)? {
-        Some(gpu) => Ok(Box::new(gpu::OnGpu::new(gpu, *knobs, &gpu::Shaders::default())?)),
+        Some(gpu) => gpu::renderer(gpu, *knobs),
         None => Ok(Box::new(Native::new(*knobs))),
     }
 }

@@ -13,8 +13,9 @@ use super::rows::Combined;
 use super::tiles::{Kind, State, TILE, Tiles};
 use super::{Knobs, Skips, Weights, shadow_map};
 use crate::encode::pack;
+use crate::frame::{check_display, emitters};
 use crate::simd::Isa;
-use crate::{Frame, Layer, RenderError, Renderer, Stats, View};
+use crate::{Frame, RenderError, Renderer, Stats, View, Visibility};
 
 mod loops;
 mod shading;
@@ -125,7 +126,7 @@ impl Native {
         };
         let theatre = &*shadow_map::seen(theatre, &self.knobs);
         let skips = if view.skip { self.skips } else { Skips::NONE };
-        let layers = matches!(sink, Sink::Radiance { .. });
+        let layers = matches!(&sink, Sink::Radiance { layers, .. } if !layers.is_empty());
         let off_beam = skips.has(Skips::OFF_BEAM);
         let plan = if off_beam {
             Plan::new(theatre, view, &self.knobs)?
@@ -198,24 +199,20 @@ impl Native {
 }
 
 impl Renderer for Native {
-    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
+    fn frame(&mut self, theatre: &Theatre, view: &View, visibilities: bool) -> Result<Frame, RenderError> {
         view.check(theatre)?;
         let pixels = view.size[0] * view.size[1];
         let mut radiance = [0, 1, 2].map(|_| vec![0f32; pixels]);
-        let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
-        let kind = if self.knobs.weights == Weights::Area { "Vgeo" } else { "Virr" };
-        let names = theatre.lamp.emitters.iter().flat_map(|e| {
-            let suffixes: &[&str] = if coloured { &[".R", ".G", ".B"] } else { &[""] };
-            suffixes.iter().map(move |s| format!("{kind}.{}{s}", e.name))
-        });
-        let mut layers: Vec<Layer> = names.map(|name| Layer { name, values: vec![0.0; pixels] }).collect();
+        let names = emitters(theatre).filter(|_| visibilities);
+        let mut visibilities =
+            Visibility::each(theatre, names, self.knobs.weights.model(), |_, _| vec![0.0; pixels]);
         let [r, g, b] = &mut radiance;
         let sink = Sink::Radiance {
             radiance: [r, g, b],
-            layers: layers.iter_mut().map(|l| &mut l.values[..]).collect(),
+            layers: visibilities.iter_mut().map(|v| &mut v.values[..]).collect(),
         };
         let stats = self.draw(theatre, view, sink)?;
-        Ok(Frame { size: view.size, radiance, layers, stats })
+        Ok(Frame { size: view.size, radiance, visibilities, standard_error: None, stats })
     }
 
     fn display(
@@ -226,17 +223,7 @@ impl Renderer for Native {
         out: &mut [u32],
     ) -> Result<Stats, RenderError> {
         view.check(theatre)?;
-        if out.len() != view.size[0] * view.size[1] {
-            return Err(RenderError::View(format!(
-                "{} pixels given for {}x{}",
-                out.len(),
-                view.size[0],
-                view.size[1]
-            )));
-        }
-        if !(white.is_finite() && white > 0.0) {
-            return Err(RenderError::View(format!("white = {white}: a radiance above 0")));
-        }
+        check_display(view, white, out)?;
         self.draw(theatre, view, Sink::Display { white, out })
     }
 

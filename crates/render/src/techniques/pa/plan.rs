@@ -2,25 +2,13 @@
 //! tables and their fixed-point scales.
 
 use glam::{DVec2, DVec3};
-use kelir_scene::{Ambient, EmitterShape, Plane, Theatre};
+use kelir_scene::{Ambient, EmitterShape, Theatre};
 
-use super::tilted::Frame;
-use super::{Knobs, Variant, Weights, window::Windows};
-use crate::project::{ShadowBox, pixel_m};
+use super::{Knobs, Variant, Weights};
+use crate::project::tilted::{Piece, PlaneFrame};
+use crate::project::window::Windows;
+use crate::project::{ShadowBox, is_tilted, pixel_m};
 use crate::{Pixel, RenderError, View};
-
-/// A rectangle of an emitter.
-#[derive(Clone, Debug)]
-pub struct Piece {
-    /// Which emitter it belongs to.
-    pub emitter: usize,
-    /// Its centre, metres.
-    pub centre_m: DVec3,
-    /// Its full sides, metres.
-    pub size_m: [f64; 2],
-    /// Its share of its emitter's area.
-    pub weight: f64,
-}
 
 /// One plane seen from one piece.
 #[derive(Clone, Debug)]
@@ -42,7 +30,7 @@ pub struct Lookup {
     /// A later look-up of the same plane whose boxes contain this one's: what is lit or dark there is so here.
     pub within: Option<usize>,
     /// For a tilted plane, in place of windows.
-    pub tilted: Option<Frame>,
+    pub tilted: Option<PlaneFrame>,
 }
 
 /// Everything but the pixels.
@@ -124,7 +112,7 @@ impl Plan {
 
     fn add_tilted(&mut self, theatre: &Theatre, p: usize, all: bool) {
         let plane = &theatre.planes[p];
-        let frame = Frame::new(plane);
+        let frame = PlaneFrame::new(plane);
         let corner = 0.5 * DVec2::new(theatre.screen.width_m, theatre.screen.height_m);
         let grid = DVec2::new(plane.mask.width as f64, plane.mask.height as f64);
         let off = self.pieces.iter().all(|piece| {
@@ -218,11 +206,6 @@ impl Plan {
         }
         self.channels = self.channels.max(plane.mask.channels);
     }
-}
-
-/// Whether a plane is not parallel to the screen.
-pub fn is_tilted(plane: &Plane) -> bool {
-    plane.tilt_deg != [0.0; 2]
 }
 
 /// An emitter's pieces: a rectangle's `split` × `split`, or a disk's `strips` of equal height, each as wide as its own area asks and cut

@@ -2,7 +2,7 @@
 
 use super::plan::Lookup;
 use super::table::{Sum, Sums, Table};
-use super::window::Windows;
+use crate::project::window::Windows;
 use crate::simd::{Isa, multiversion};
 
 /// Entries behind the last that a vector load may touch.
@@ -313,5 +313,49 @@ fn look_up_any(
             sum -= start_before[k * count + i] * sums[a + k + 1].wrapping_sub(sums[a + k]) as f64;
         }
         *out = (1.0 - (sum * norm) as f32).clamp(0.0, 1.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::tests::{all, with};
+
+    /// What looks up without checks reads what the checked loop reads, on every instruction set, for windows that hang over both ends.
+    #[test]
+    fn unchecked_look_ups_are_the_checked_ones() {
+        for (reach, pixel, step) in
+            [(1, 0.0, 0.7), (2, 0.8, 1.3), (3, 1.9, 2.1), (4, 2.7, 9.5), (2, 0.4, 40.0)]
+        {
+            let (count, size) = (203, 97);
+            let x = Windows::new(count, |i| (i as f64 - 60.0) * step + 3.3, 5.7, size, pixel);
+            assert_eq!(x.reach, reach);
+            let entry = |k: usize| (k as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 22;
+            let sums: Vec<u64> = (0..size + 2 * reach + 2 + SPARE)
+                .scan(0, |sum, k| {
+                    *sum += entry(k);
+                    Some(*sum)
+                })
+                .collect();
+            let (ends, weights) = ((&x.start[..], &x.stop[..]), (&x.start_before[..], &x.stop_before[..]));
+            let norm = 1.0 / sums[sums.len() - 1] as f64;
+            let mut checked = vec![0f32; count];
+            look_up_any(&sums, reach, ends, weights, count, norm, &mut checked);
+            assert!(checked.iter().any(|v| *v > 0.0 && *v < 1.0), "nothing is looked up");
+            for isa in all() {
+                let mut out = vec![0f32; count];
+                with(isa, || match reach {
+                    1 => look_up::<1>(&sums, ends, weights, count, norm, x.near, &mut out),
+                    2 => look_up::<2>(&sums, ends, weights, count, norm, x.near, &mut out),
+                    3 => look_up::<3>(&sums, ends, weights, count, norm, x.near, &mut out),
+                    _ => look_up::<4>(&sums, ends, weights, count, norm, x.near, &mut out),
+                });
+                assert_eq!(out, checked, "{} texels a pixel, {}", pixel, isa.name());
+            }
+            // The negative control: windows one texel further see other sums.
+            let mut shifted = vec![0f32; count];
+            look_up_any(&sums[1..], reach, ends, weights, count, norm, &mut shifted);
+            assert_ne!(shifted, checked);
+        }
     }
 }

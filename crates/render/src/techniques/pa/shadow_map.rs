@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 use kelir_scene::{Mask, Plane, Texels, Theatre};
 use rayon::prelude::*;
 
-use super::plan::is_tilted;
 use super::{Knobs, Variant};
+use crate::project::is_tilted;
 
 /// The theatre that tables are made of: as it is, or mapped where the knobs ask for it and every plane is upright (the plan refuses others).
 pub fn seen<'a>(theatre: &'a Theatre, knobs: &Knobs) -> Cow<'a, Theatre> {

@@ -303,6 +303,24 @@ mod tests {
         }
     }
 
+    /// A row by vectors is a row by single texels, whatever is left over of whole vectors.
+    #[test]
+    fn rows_are_the_same_on_every_instruction_set() {
+        use crate::simd::tests::{all, with};
+        for n in [1, 15, 16, 17, 31, 32, 100] {
+            let texels: Vec<u8> =
+                (0..n).map(|k: usize| (k.wrapping_mul(2_654_435_761) >> 11) as u8).collect();
+            let above: Vec<u32> = (0..=n as u32).map(|k| k.wrapping_mul(0x9e37_79b9)).collect();
+            let mut plain = vec![0; n + 1];
+            row(&texels, &above, &mut plain);
+            for isa in all() {
+                let mut out = vec![1; n + 1];
+                with(isa, || u32::add_row(&texels, &above, &mut out));
+                assert_eq!(out, plain, "{n} texels on {}", isa.name());
+            }
+        }
+    }
+
     /// A table whose entries wrap still knows every box under 2³².
     #[test]
     fn wrap_around_cancels() {

@@ -73,7 +73,7 @@ fn worst(frame: &crate::Frame, oracle: &Theatre, pixel: Pixel) -> f64 {
 
 /// [`worst`] over every `step`th column and row.
 fn worst_of(frame: &crate::Frame, oracle: &Theatre, pixel: Pixel, step: [usize; 2]) -> f64 {
-    let coloured = frame.layers.len() == 3 * oracle.lamp.emitters.len();
+    let coloured = frame.visibilities.len() == 3 * oracle.lamp.emitters.len();
     let view = View { size: frame.size, ..view(pixel) };
     // What is a finite sum does not depend on it.
     let tolerance = if pixel == Pixel::Centre { 1e-5 } else { 1.0 };
@@ -83,8 +83,8 @@ fn worst_of(frame: &crate::Frame, oracle: &Theatre, pixel: Pixel, step: [usize; 
             for e in 0..oracle.lamp.emitters.len() {
                 let v = geometric(oracle, e, Point::pixel(oracle, &view, i, j), tolerance);
                 for (c, v) in v.into_iter().enumerate().take(if coloured { 3 } else { 1 }) {
-                    let layer = &frame.layers[if coloured { e * 3 + c } else { e }];
-                    worst = worst.max((f64::from(layer.values[j * frame.size[0] + i]) - v).abs());
+                    let drawn = &frame.visibilities[if coloured { e * 3 + c } else { e }];
+                    worst = worst.max((f64::from(drawn.values[j * frame.size[0] + i]) - v).abs());
                 }
             }
         }
@@ -140,7 +140,7 @@ fn colour_and_sixteen_bits() {
     let mut scene = theatre(vec![plane(figure(64, 80, 3), [0.0, 0.0, -0.4], 0.5)]);
     let frame = draw(&scene, Pixel::Area);
     assert_eq!(
-        frame.layers.iter().map(|l| l.name.as_str()).collect::<Vec<_>>()[..2],
+        frame.visibilities.iter().map(crate::Visibility::name).collect::<Vec<_>>()[..2],
         ["Vgeo.inner.R", "Vgeo.inner.G"]
     );
     let error = worst(&frame, &scene, Pixel::Area);
@@ -191,7 +191,7 @@ fn a_half_plane_casts_a_linear_ramp() {
     for i in 0..SIZE[0] {
         let x = crate::project::pixel_m(&scene.screen, SIZE, i as f64, 0.0).x;
         let expected = (0.5 + 0.5 * x / half).clamp(0.0, 1.0);
-        let got = f64::from(frame.layers[1].values[90 * SIZE[0] + i]);
+        let got = f64::from(frame.visibilities[1].values[90 * SIZE[0] + i]);
         assert!((got - expected).abs() < 1e-6, "column {i}: {got}, not {expected}");
         seen += usize::from(expected > 0.0 && expected < 1.0);
     }
@@ -207,10 +207,10 @@ fn several_planes_multiply_their_means() {
     let both = draw(&theatre(planes.clone()), Pixel::Centre);
     let alone: Vec<_> = planes.iter().map(|p| draw(&theatre(vec![p.clone()]), Pixel::Centre)).collect();
     for (c, name) in ["R", "G", "B"].iter().enumerate() {
-        assert_eq!(both.layers[c].name, format!("Vgeo.inner.{name}"));
-        for k in 0..both.layers[c].values.len() {
-            let expected = alone[0].layers[0].values[k] * alone[1].layers[c].values[k];
-            assert!((both.layers[c].values[k] - expected).abs() < 1e-6);
+        assert_eq!(both.visibilities[c].name(), format!("Vgeo.inner.{name}"));
+        for k in 0..both.visibilities[c].values.len() {
+            let expected = alone[0].visibilities[0].values[k] * alone[1].visibilities[c].values[k];
+            assert!((both.visibilities[c].values[k] - expected).abs() < 1e-6);
         }
     }
     // Splitting the lamp tends to the mean of the product.
@@ -242,7 +242,8 @@ fn irradiance_weights_tend_to_the_light_meter() {
         for j in (0..27).step_by(3) {
             for i in (0..48).step_by(3) {
                 let v = visibility(&scene, 0, Point::pixel(&scene, &view, i, j), 1.0);
-                worst = worst.max((f64::from(frame.layers[0].values[j * 48 + i]) - v.irradiance[0]).abs());
+                worst =
+                    worst.max((f64::from(frame.visibilities[0].values[j * 48 + i]) - v.irradiance[0]).abs());
             }
         }
         worst
@@ -276,7 +277,7 @@ fn paper_ambient_by_hand() {
                 .map(|e| e.radiance[0] * crate::irradiance::unit(&e.shape, lamp.position_m, p))
                 .collect();
             let mean = |f: &crate::Frame| {
-                let sum: f64 = e0.iter().zip(&f.layers).map(|(e, l)| e * f64::from(l.values[k])).sum();
+                let sum: f64 = e0.iter().zip(&f.visibilities).map(|(e, l)| e * f64::from(l.values[k])).sum();
                 sum / e0.iter().sum::<f64>()
             };
             let own: Vec<f64> = alone[..count].iter().map(|f| 1.0 - mean(f)).collect();
@@ -427,8 +428,8 @@ fn a_barely_tilted_plane_is_an_upright_one() {
     let upright = draw(&scene, Pixel::Centre);
     scene.planes[0].tilt_deg = [1e-9, -1e-9];
     let tilted = draw(&scene, Pixel::Centre);
-    for (a, b) in upright.layers.iter().zip(&tilted.layers) {
-        assert!(a.values.iter().zip(&b.values).all(|(a, b)| (a - b).abs() < 1e-6), "{}", a.name);
+    for (a, b) in upright.visibilities.iter().zip(&tilted.visibilities) {
+        assert!(a.values.iter().zip(&b.values).all(|(a, b)| (a - b).abs() < 1e-6), "{}", a.name());
     }
     let mut all = vec![0; SIZE[0] * SIZE[1]];
     let mut skipped = all.clone();

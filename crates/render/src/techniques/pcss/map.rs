@@ -5,8 +5,8 @@ use kelir_scene::{Lamp, Mask, Plane, Texels, Theatre};
 use rayon::prelude::*;
 
 use super::{Knobs, refuse};
-use crate::mc::bounds::{Padded, Range};
 use crate::project::{pixel_m, turned};
+use crate::trace::bounds::{Padded, Range};
 use crate::{Pixel, RenderError, View};
 
 /// Depth codes of a tilted plane, over the range of its own depths.

@@ -17,6 +17,7 @@
 //! Sample places are Owen-scrambled Sobol points, one of sixteen patterns a pixel, and all that chooses a texel is integer
 //! arithmetic: both backends read the same texels, so their images are equal to the bit.
 
+#[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 mod gpu;
 mod map;
 mod native;
@@ -31,15 +32,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::techniques::knobs::{self, Knob, Range};
 
-use crate::encode::{Srgb, pack};
+use crate::frame::emitters;
 use crate::irradiance::UnitImages;
-use crate::mc::points::{Points, REPLICATES};
-use crate::{Backend, Frame, Layer, Meter, RenderError, Renderer, Stats, View, albedo};
+use crate::trace::sobol::{Points, REPLICATES, fold};
+use crate::{Backend, Frame, Meter, RenderError, Renderer, Stats, View, Visibility, VisibilityModel, albedo};
 use map::{Beam, Map};
 use native::{Row, Shader};
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
-/// draws, in its own files or in what it borrows from another. What was made before is then made anew.
+/// draws, in its own files or in what it shares with others. What was made before is then made anew.
 pub const REVISION: u32 = 1;
 
 /// What can be turned.
@@ -225,7 +226,7 @@ impl Pcss {
             patterns: &patterns,
             lit: self.lit.centres(),
             albedo: &albedo,
-            seed: crate::mc::points::fold(self.knobs.seed),
+            seed: fold(self.knobs.seed),
             layers,
             meter: &self.meter,
         };
@@ -251,12 +252,8 @@ fn refuse(reason: String) -> RenderError {
 }
 
 impl Renderer for Pcss {
-    fn radiance(&mut self, theatre: &Theatre, view: &View) -> Result<Frame, RenderError> {
-        let (rows, stats) = self.rows(theatre, view, true)?;
-        let coloured = theatre.planes.iter().any(|p| p.mask.channels == 3);
-        let channels: &[&str] = if coloured { &[".R", ".G", ".B"] } else { &[""] };
-        let names = theatre.lamp.emitters.iter();
-        let names = names.flat_map(|e| channels.iter().map(move |c| format!("Vgeo.{}{c}", e.name)));
+    fn frame(&mut self, theatre: &Theatre, view: &View, visibilities: bool) -> Result<Frame, RenderError> {
+        let (rows, stats) = self.rows(theatre, view, visibilities)?;
         let plane = |k: usize| -> Vec<f32> {
             let of = |row: &Row| row.values[k * view.size[0]..(k + 1) * view.size[0]].to_vec();
             rows.iter().flat_map(of).collect()
@@ -264,37 +261,12 @@ impl Renderer for Pcss {
         // A puppet off the beam may be the only coloured one: the grey visibility then serves all channels.
         let drawn = (rows.first().map_or(0, |r| r.values.len() / view.size[0]) - 3)
             / theatre.lamp.emitters.len().max(1);
-        let layer = |(k, name): (usize, String)| {
-            let (e, c) = (k / channels.len(), k % channels.len());
-            Layer { name, values: plane(3 + e * drawn + c.min(drawn - 1)) }
-        };
-        let layers = names.enumerate().map(layer).collect();
-        Ok(Frame { size: view.size, radiance: [0, 1, 2].map(plane), layers, stats })
-    }
-
-    fn display(
-        &mut self,
-        theatre: &Theatre,
-        view: &View,
-        white: f64,
-        out: &mut [u32],
-    ) -> Result<Stats, RenderError> {
-        let [width, height] = view.size;
-        if out.len() != width * height {
-            return Err(RenderError::View(format!("{} pixels given for {width}x{height}", out.len())));
-        }
-        if !(white.is_finite() && white > 0.0) {
-            return Err(RenderError::View(format!("white = {white}: a radiance above 0")));
-        }
-        let (rows, stats) = self.rows(theatre, view, false)?;
-        let (srgb, scale) = (Srgb::get(), (1.0 / white) as f32);
-        for (out, row) in out.chunks_exact_mut(width).zip(&rows) {
-            for (i, pixel) in out.iter_mut().enumerate() {
-                let [r, g, b] = [0, 1, 2].map(|c| srgb.code(row.values[c * width + i] * scale));
-                *pixel = pack(r, g, b);
-            }
-        }
-        Ok(stats)
+        let names = emitters(theatre).filter(|_| visibilities);
+        let visibilities = Visibility::each(theatre, names, VisibilityModel::Geometric, |e, c| {
+            plane(3 + e * drawn + c.min(drawn - 1))
+        });
+        let radiance = [0, 1, 2].map(plane);
+        Ok(Frame { size: view.size, radiance, visibilities, standard_error: None, stats })
     }
 
     fn watch(&mut self, meter: &Meter) {

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::map::{Beam, Map};
 use super::{Pattern, Patterns};
 use crate::albedo::PixelAlbedo;
-use crate::mc::points::{REPLICATES, stream};
+use crate::trace::sobol::{REPLICATES, stream};
 use crate::{Meter, RenderError, View, ambient};
 
 /// Everything that a row needs.

@@ -76,7 +76,8 @@ fn exact(theatre: &Theatre, view: &View) -> Frame {
 }
 
 fn rms(a: &Frame, b: &Frame) -> f64 {
-    let pairs = || a.layers.iter().zip(&b.layers).flat_map(|(a, b)| a.values.iter().zip(&b.values));
+    let pairs =
+        || a.visibilities.iter().zip(&b.visibilities).flat_map(|(a, b)| a.values.iter().zip(&b.values));
     let sum: f64 = pairs().map(|(a, b)| f64::from(a - b).powi(2)).sum();
     (sum / pairs().count() as f64).sqrt()
 }
@@ -84,7 +85,7 @@ fn rms(a: &Frame, b: &Frame) -> f64 {
 /// The width of a straight edge's penumbra, metres: of a ramp V from 0 to 1 it is 6 ∫ V (1 − V) dx.
 fn penumbra_m(frame: &Frame, theatre: &Theatre) -> f64 {
     let width = frame.size[0];
-    let row = &frame.layers[0].values[27 * width..28 * width];
+    let row = &frame.visibilities[0].values[27 * width..28 * width];
     let pixel = theatre.screen.width_m / width as f64;
     6.0 * pixel * row.iter().map(|v| f64::from(v * (1.0 - v))).sum::<f64>()
 }
@@ -107,7 +108,7 @@ fn a_straight_edge_has_its_penumbra() {
         let view = view(pixel);
         let (drawn, exact) = (draw(&scene, knobs, &view), exact(&scene, &view));
         let mut seen = [0; 3];
-        for (v, exact) in drawn.layers[0].values.iter().zip(&exact.layers[0].values) {
+        for (v, exact) in drawn.visibilities[0].values.iter().zip(&exact.visibilities[0].values) {
             // The map shows the edge to half a texel, 1 % of the penumbra.
             match *exact {
                 0.0 => assert_eq!(*v, 0.0),
@@ -177,9 +178,7 @@ fn both_backends_draw_the_same() {
         for _ in 0..2 {
             let frame = on_gpu.radiance(&scene, &view).unwrap();
             assert_eq!(frame.radiance, cpu.radiance);
-            assert!(
-                frame.layers.iter().zip(&cpu.layers).all(|(a, b)| a.name == b.name && a.values == b.values)
-            );
+            assert!(frame.visibilities.iter().zip(&cpu.visibilities).all(|(a, b)| a == b));
         }
         let mut codes = [vec![0; 96 * 54], vec![0; 96 * 54]];
         on_gpu.display(&scene, &view, 30.0, &mut codes[0]).unwrap();
@@ -248,10 +247,10 @@ fn planes_multiply_and_the_bias_leaves_some_out() {
         draw(&theatre(square(0.1), planes.to_vec()), Knobs { bias_m, ..Knobs::default() }, &view)
     };
     let (both, near, far) = (of(&planes, 0.0), of(&planes[..1], 0.0), of(&planes[1..], 0.0));
-    let parts = near.layers[0].values.iter().zip(&far.layers[0].values);
-    assert!(both.layers[0].values.iter().zip(parts).all(|(v, (a, b))| (v - a * b).abs() < 1e-6));
+    let parts = near.visibilities[0].values.iter().zip(&far.visibilities[0].values);
+    assert!(both.visibilities[0].values.iter().zip(parts).all(|(v, (a, b))| (v - a * b).abs() < 1e-6));
     assert_eq!(of(&planes, 0.5).radiance, far.radiance);
-    assert_eq!(of(&planes, 1.0).layers[0].values, vec![1.0; 96 * 54]);
+    assert_eq!(of(&planes, 1.0).visibilities[0].values, vec![1.0; 96 * 54]);
 }
 
 #[test]
@@ -296,7 +295,7 @@ proptest! {
         let view = View { size: [32, 18], pixel: Pixel::Area, skip: true };
         let knobs = Knobs { map_size: 64, filter_samples: 7, blocker_samples: 3, seed, ..Knobs::default() };
         let frame = draw(&scene, knobs, &view);
-        prop_assert!(frame.layers[0].values.iter().all(|v| (0.0..=1.0).contains(v)));
+        prop_assert!(frame.visibilities[0].values.iter().all(|v| (0.0..=1.0).contains(v)));
         prop_assert_eq!(frame.radiance, draw(&scene, knobs, &View { skip: false, ..view }).radiance);
     }
 }

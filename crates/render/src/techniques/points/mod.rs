@@ -4,14 +4,18 @@
 //! map). Its visibility is their mean, so it tends to the geometric one, and few lights show as steps. `area` pixels
 //! average over a lattice of points, so that a hard shadow's edge is no staircase.
 
+use std::time::Instant;
+
+use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
 use crate::techniques::knobs::{self, Knob, Range};
-
-use crate::{Backend, RenderError, Renderer, mc};
+use crate::trace::Tracer;
+use crate::trace::sobol::{Points, REPLICATES};
+use crate::{Backend, Frame, Meter, RenderError, Renderer, Stats, View, VisibilityModel};
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
-/// draws, in its own files or in what it borrows from another. What was made before is then made anew.
+/// draws, in its own files or in what it shares with others. What was made before is then made anew.
 pub const REVISION: u32 = 1;
 
 /// What can be turned.
@@ -56,7 +60,58 @@ pub const KNOBS: &[Knob] = &[
 /// The renderer for `knobs` on `backend`.
 pub fn renderer(knobs: &Knobs, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
     knobs.check()?;
-    mc::lattice(knobs.lights.isqrt() as usize, knobs.subpixels as usize, backend)
+    let lights = lattice(knobs.lights.isqrt() as usize, knobs.subpixels as usize);
+    Ok(Box::new(PointLights { lights, tracer: Tracer::new(backend)? }))
+}
+
+/// Lights that stand still.
+struct PointLights {
+    lights: Points,
+    tracer: Tracer,
+}
+
+impl Renderer for PointLights {
+    fn frame(&mut self, theatre: &Theatre, view: &View, visibilities: bool) -> Result<Frame, RenderError> {
+        let (mut stats, clock) = (Stats::default(), Instant::now());
+        let mut trace = self.tracer.trace(theatre, view, VisibilityModel::Geometric, visibilities)?;
+        stats.step("prepare", clock);
+        let clock = Instant::now();
+        let rows = trace.all(&self.lights)?;
+        stats.step("sample", clock);
+        trace.count(&rows, self.lights.samples, &mut stats);
+        // What the lanes of a lattice differ by is no error.
+        Ok(Frame { standard_error: None, ..trace.frame(&rows, stats) })
+    }
+
+    fn watch(&mut self, meter: &Meter) {
+        self.tracer.meter = meter.clone();
+    }
+
+    fn class(&self) -> String {
+        self.tracer.class()
+    }
+
+    fn adapter(&self) -> String {
+        self.tracer.adapter()
+    }
+}
+
+/// The middles of `lights` × `lights` cells of the emitter, each for the middles of `subpixels` × `subpixels` cells of
+/// the pixel; repeated until every lane has as many.
+fn lattice(lights: usize, subpixels: usize) -> Points {
+    let total = (lights * subpixels).pow(2);
+    // 16 is a power of two: the lanes share out a multiple of it.
+    let lanes = REPLICATES >> total.trailing_zeros().min(REPLICATES.trailing_zeros());
+    let samples = total * lanes / REPLICATES;
+    let middle = |k: usize, n: usize| (((k as f64 + 0.5) / n as f64 - 0.5) * 2f64.powi(32)) as i64 as u32;
+    let coordinate = |k: usize, d: usize| match d {
+        0 => middle(k % lights, lights),
+        1 => middle(k / lights % lights, lights),
+        2 => middle(k / lights.pow(2) % subpixels, subpixels),
+        _ => middle(k / lights.pow(2) / subpixels, subpixels),
+    };
+    let dims = [0, 1, 2, 3].map(|d| (0..samples * REPLICATES).map(|i| coordinate(i % total, d)).collect());
+    Points { seed: 0, samples, scrambled: false, dims }
 }
 
 #[cfg(test)]
@@ -100,10 +155,14 @@ mod tests {
     }
 
     fn rms(a: &Frame, b: &Frame) -> f64 {
-        assert_eq!(a.layers[0].name, b.layers[0].name);
-        let squares: f64 =
-            a.layers[0].values.iter().zip(&b.layers[0].values).map(|(a, b)| f64::from(a - b).powi(2)).sum();
-        (squares / a.layers[0].values.len() as f64).sqrt()
+        assert_eq!(a.visibilities[0].name(), b.visibilities[0].name());
+        let squares: f64 = a.visibilities[0]
+            .values
+            .iter()
+            .zip(&b.visibilities[0].values)
+            .map(|(a, b)| f64::from(a - b).powi(2))
+            .sum();
+        (squares / a.visibilities[0].values.len() as f64).sqrt()
     }
 
     /// One light is one look-up; more lights come nearer to the area light, which PA knows exactly.
@@ -115,7 +174,7 @@ mod tests {
             let exact = { exact }.radiance(&scene(), &view).unwrap();
             let errors = [1, 4, 16, 64, 256].map(|lights| {
                 let frame = draw(Knobs { lights, ..Knobs::default() }, Backend::Cpu, pixel);
-                assert_eq!(frame.layers.len(), 1);
+                assert_eq!(frame.visibilities.len(), 1);
                 rms(&frame, &exact)
             });
             // A lattice against a lattice of texels: not every step helps as much.
@@ -123,7 +182,7 @@ mod tests {
             assert!(errors[0] > 0.05 && errors[4] < 0.1 * errors[0], "{errors:?}");
         }
         let hard = draw(Knobs { lights: 1, subpixels: 1 }, Backend::Cpu, Pixel::Centre);
-        let codes = hard.layers[0].values.iter().map(|v| f64::from(*v) * 255.0);
+        let codes = hard.visibilities[0].values.iter().map(|v| f64::from(*v) * 255.0);
         assert!({ codes }.all(|c| (c - 40.0).abs() < 1e-3 || (c - 255.0).abs() < 1e-3));
     }
 

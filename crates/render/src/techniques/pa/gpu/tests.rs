@@ -88,8 +88,8 @@ fn wrong() -> Shaders {
 
 /// Largest difference of any visibility.
 fn worst(a: &Frame, b: &Frame) -> f32 {
-    let pairs = a.layers.iter().zip(&b.layers).flat_map(|(a, b)| {
-        assert_eq!(a.name, b.name);
+    let pairs = a.visibilities.iter().zip(&b.visibilities).flat_map(|(a, b)| {
+        assert_eq!(a.name(), b.name());
         a.values.iter().zip(&b.values)
     });
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
@@ -234,7 +234,7 @@ fn tilted_planes_stay_exact_under_stress() {
             // A steep plane bends a tile's map: 2e-6 of a texel, of a box of a tenth.
             let most = if tilt[0] > 80.0 { 4e-5 } else { 4e-6 };
             assert!(worst(&truth, &drawn) <= most, "side {side}, {tilt:?}: {:e}", worst(&truth, &drawn));
-            assert!(drawn.layers[0].values.iter().all(|v| (0.0..=1.0).contains(v)));
+            assert!(drawn.visibilities[0].values.iter().all(|v| (0.0..=1.0).contains(v)));
         }
     }
 }
@@ -251,7 +251,7 @@ fn gpu_agrees_with_the_oracle() {
             for i in (1..160).step_by(5) {
                 for e in 0..2 {
                     let truth = geometric(scene, e, Point::pixel(scene, &view, i, j), 1.0)[0];
-                    let of = |f: &Frame| (f64::from(f.layers[e].values[j * 160 + i]) - truth).abs();
+                    let of = |f: &Frame| (f64::from(f.visibilities[e].values[j * 160 + i]) - truth).abs();
                     error = error.max(of(&frame));
                     control = control.max(of(&off));
                 }
@@ -276,7 +276,7 @@ fn gpu_stays_exact_under_stress() {
             let truth = Native::new(Knobs::default()).radiance(&scene, &view).unwrap();
             let drawn = gpu.radiance(&scene, &view).unwrap();
             assert!(worst(&truth, &drawn) <= 4e-6, "side {side}, z {z}: {:e}", worst(&truth, &drawn));
-            assert!(drawn.layers[0].values.iter().all(|v| (0.0..=1.0).contains(v)));
+            assert!(drawn.visibilities[0].values.iter().all(|v| (0.0..=1.0).contains(v)));
         }
     }
 }

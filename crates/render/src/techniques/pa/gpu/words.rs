@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::super::dome::DomeLight;
 use super::super::plan::{Lookup, Plan};
 use super::super::tiles::TILE;
-use super::super::tilted::Frame;
-use super::super::window::Windows;
+use crate::project::tilted::PlaneFrame;
+use crate::project::window::Windows;
 
 /// Word vectors a row of the texture, as in the shaders.
 pub const ROW: usize = 2048;
@@ -128,7 +128,7 @@ pub fn slope(
     size: [usize; 2],
     plan: &Plan,
     lookup: &Lookup,
-    frame: &Frame,
+    frame: &PlaneFrame,
     home: [usize; 2],
 ) -> [[u32; 4]; 6] {
     let (piece, sub) = (&plan.pieces[lookup.piece], plan.sub);
@@ -177,7 +177,7 @@ pub fn slope(
 }
 
 /// What a piece's half-sides change of a tilted plane's n · q.
-pub fn along(plan: &Plan, lookup: &Lookup, frame: &Frame) -> [f32; 2] {
+pub fn along(plan: &Plan, lookup: &Lookup, frame: &PlaneFrame) -> [f32; 2] {
     let [w, h] = plan.pieces[lookup.piece].size_m;
     [(0.5 * w * frame.normal.x) as f32, (0.5 * h * frame.normal.y) as f32]
 }

@@ -166,7 +166,7 @@ impl Job<'_> {
                     State::Dark => *out = 0.0,
                     State::Penumbra => {
                         let p = pixel_m(&self.theatre.screen, size, x as f64, row as f64);
-                        *out = 1.0 - frame.opacity(table, piece, p) as f32;
+                        *out = 1.0 - table.opacity(frame, piece, p) as f32;
                         boxes += 1;
                     }
                 }

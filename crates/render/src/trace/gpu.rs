@@ -8,12 +8,12 @@ use rayon::prelude::*;
 use super::bounds::Padded;
 use super::estimate::Job;
 use super::plan::{Axis, Plan, PlaneMap, Shape};
-use super::points::{self, Points, REPLICATES};
+use super::sobol::{self, Points, REPLICATES};
 use crate::RenderError;
 use crate::gpu::{Gpu, Output};
 
 /// The shader's text.
-pub const WGSL: &str = include_str!("mc.wgsl");
+pub const WGSL: &str = include_str!("trace.wgsl");
 
 /// Invocations a workgroup, as in the shader.
 pub(super) const WORKGROUP: u32 = 64;
@@ -114,7 +114,7 @@ pub struct Scene {
 impl Sampler {
     /// Compiles `wgsl`, which is [`WGSL`] but for tests that need a wrong one.
     pub fn new(gpu: Gpu, wgsl: &str) -> Result<Self, RenderError> {
-        let module = gpu.module("mc.wgsl", wgsl);
+        let module = gpu.module("trace.wgsl", wgsl);
         let pipeline = gpu.pipeline(&module, "sample");
         gpu.check()?;
         Ok(Self { gpu, pipeline, masks: None, output: None, points: None })
@@ -182,7 +182,7 @@ impl Sampler {
             samples: samples as u32,
             jobs: 0,
             planes: masks.len() as u32,
-            seed: points::fold(seed),
+            seed: sobol::fold(seed),
             area: u32::from(plan.area),
             channels: plan.channels as u32,
             scrambled: u32::from(points.scrambled),

@@ -1,4 +1,8 @@
-//! Where a point of the screen sees an emitter on an occluder plane that is parallel to the screen.
+//! Where a point of the screen sees an emitter on an occluder plane: a box where the plane is parallel to the screen, its ends spread over
+//! a pixel ([`window`]), and a quadrilateral where it is not ([`tilted`]).
+
+pub mod tilted;
+pub mod window;
 
 use glam::{DMat3, DVec2, DVec3};
 use kelir_scene::{Plane, Screen};
@@ -38,6 +42,11 @@ impl ShadowBox {
     pub fn centre(&self, p_m: DVec2) -> DVec2 {
         self.scale * p_m + self.offset
     }
+}
+
+/// Whether a plane is not parallel to the screen.
+pub fn is_tilted(plane: &Plane) -> bool {
+    plane.tilt_deg != [0.0; 2]
 }
 
 /// A vector of the puppet's own frame in the theatre's: `R_y(tilt_deg[1]) · R_x(tilt_deg[0])`, right-handed.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::bounds::Padded;
 use super::native::Sampler;
 use super::plan::Plan;
-use super::points::{Points, REPLICATES};
+use super::sobol::{Points, REPLICATES};
 use crate::albedo::PixelAlbedo;
 use crate::{Meter, RenderError, ambient};
 

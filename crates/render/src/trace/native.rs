@@ -2,7 +2,7 @@
 
 use super::bounds::Padded;
 use super::plan::{Axis, EmitterPlan, Plan, PlaneMap, Shape};
-use super::points::{self, Points, REPLICATES};
+use super::sobol::{self, Points, REPLICATES};
 use super::tilted::{Seen, Tilted};
 use crate::simd::Isa;
 
@@ -66,12 +66,11 @@ impl Sampler<'_> {
     #[inline(always)]
     fn pixel<const C: usize, const AREA: bool>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
         let emitter = &self.plan.emitters[k];
-        let key =
-            points::stream(points::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);
-        let mut shifts = [[0; REPLICATES]; points::DIMENSIONS];
+        let key = sobol::stream(sobol::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);
+        let mut shifts = [[0; REPLICATES]; sobol::DIMENSIONS];
         for (d, shifts) in shifts.iter_mut().enumerate() {
             for (r, shift) in shifts.iter_mut().enumerate() {
-                *shift = if self.points.scrambled { points::shift(key, d, r) } else { 0 };
+                *shift = if self.points.scrambled { sobol::shift(key, d, r) } else { 0 };
             }
         }
         let dims = self.points.dims.each_ref().map(|d| &d.as_chunks::<REPLICATES>().0[..self.points.samples]);
@@ -172,12 +171,8 @@ impl Sampler<'_> {
             for (c, seen) in seen.iter_mut().enumerate() {
                 let plane = if c < mask.channels { c } else { 0 } * mask.stride * mask.rows;
                 let codes = &mask.codes[plane..plane + mask.stride * mask.rows];
-                let mut code = [0u16; REPLICATES];
-                for r in 0..REPLICATES {
-                    debug_assert!((at[r] as usize) < codes.len());
-                    // SAFETY: both texels are clamped to the padded grid.
-                    code[r] = unsafe { *codes.get_unchecked(at[r] as usize) };
-                }
+                // SAFETY: both texels are clamped to the padded grid.
+                let code = unsafe { gather(codes, &at) };
                 for r in 0..REPLICATES {
                     seen[r] *= f32::from(code[r]);
                 }
@@ -227,6 +222,18 @@ fn placed(axis: &Axis, t: &Lanes) -> [u32; REPLICATES] {
         out[r] = texel(axis, axis.offset + t[r]);
     }
     out
+}
+
+/// The codes at sixteen places. Safety: each place is one of `codes`.
+#[inline(always)]
+unsafe fn gather(codes: &[u16], at: &[u32; REPLICATES]) -> [u16; REPLICATES] {
+    let mut code = [0u16; REPLICATES];
+    for r in 0..REPLICATES {
+        debug_assert!((at[r] as usize) < codes.len());
+        // SAFETY: the caller's.
+        code[r] = unsafe { *codes.get_unchecked(at[r] as usize) };
+    }
+    code
 }
 
 #[inline(always)]
@@ -373,4 +380,38 @@ fn weight<const AREA: bool>(e: &EmitterPlan, i: usize, j: usize, u: &[Lanes; 2],
         out[r] = 1.0 / (w * w);
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// [`texel`] as anyone would write it.
+    fn checked(axis: &Axis, t: f32) -> u32 {
+        let t = if t.is_nan() { axis.low } else { t.clamp(axis.low, axis.high) };
+        (t.floor() as i32).wrapping_add(axis.anchor) as u32
+    }
+
+    proptest! {
+        /// The unchecked conversion falls on the checked one's texel, wherever a point falls, if anywhere.
+        #[test]
+        fn unchecked_texels_are_the_checked_ones(bits: u32, near in -300f32..300.0, low in -200i32..0, size in 1i32..200, anchor in 0i32..4096) {
+            let (low, high) = (low as f32, (low + size) as f32);
+            let axis = Axis { offset: 0.0, low, high, anchor, range: super::super::bounds::Range { first: 0, last: 0 } };
+            for t in [f32::from_bits(bits), near, near.floor(), low, high, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                prop_assert_eq!(texel(&axis, t), checked(&axis, t), "{}", t);
+            }
+        }
+
+        /// What is read without a check is what is read with one.
+        #[test]
+        fn unchecked_codes_are_the_checked_ones(codes in prop::collection::vec(any::<u16>(), 1..300), places: [u32; REPLICATES]) {
+            let at = places.map(|place| place % codes.len() as u32);
+            // SAFETY: the remainders are places in `codes`.
+            let read = unsafe { gather(&codes, &at) };
+            prop_assert_eq!(read, at.map(|place| codes[place as usize]));
+        }
+    }
 }

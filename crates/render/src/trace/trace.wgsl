@@ -12,7 +12,7 @@ struct Params {
     area: u32,
     // 1 or 3.
     channels: u32,
-    // 0 for lights that stand still.
+    // 0 for points that stand still.
     scrambled: u32,
 }
 

@@ -16,7 +16,7 @@ pub struct Points {
     pub seed: u64,
     /// Points per replicate.
     pub samples: usize,
-    /// Whether each pixel shifts them at random; lights that stand still are not.
+    /// Whether each pixel shifts them at random; points that stand still are not.
     pub scrambled: bool,
     /// `dims[d][i * REPLICATES + r]` is coordinate `d` of point `i` of replicate `r`, as a fraction of 2³².
     pub dims: [Vec<u32>; DIMENSIONS],
@@ -38,25 +38,6 @@ impl Points {
             table
         });
         Self { seed, samples, scrambled: true, dims }
-    }
-
-    /// The middles of `lights` × `lights` cells of the emitter, each for the middles of `subpixels` × `subpixels` cells of
-    /// the pixel; repeated until every lane has as many.
-    pub fn lattice(lights: usize, subpixels: usize) -> Self {
-        let total = (lights * subpixels).pow(2);
-        // 16 is a power of two: the lanes share out a multiple of it.
-        let lanes = REPLICATES >> total.trailing_zeros().min(REPLICATES.trailing_zeros());
-        let samples = total * lanes / REPLICATES;
-        let middle = |k: usize, n: usize| (((k as f64 + 0.5) / n as f64 - 0.5) * 2f64.powi(32)) as i64 as u32;
-        let coordinate = |k: usize, d: usize| match d {
-            0 => middle(k % lights, lights),
-            1 => middle(k / lights % lights, lights),
-            2 => middle(k / lights.pow(2) % subpixels, subpixels),
-            _ => middle(k / lights.pow(2) / subpixels, subpixels),
-        };
-        let dims =
-            [0, 1, 2, 3].map(|d| (0..samples * REPLICATES).map(|i| coordinate(i % total, d)).collect());
-        Self { seed: 0, samples, scrambled: false, dims }
     }
 }
 

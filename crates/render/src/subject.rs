@@ -1,0 +1,117 @@
+//! What a job asks of what it draws: little enough that a stage of meshes or a photographed plate could answer as a theatre does.
+
+use kelir_scene::{Masks, Scene, Theatre, Timeline};
+
+use crate::albedo::{self, PixelAlbedo};
+use crate::{Backend, RenderError, Renderer, Technique, View, exposure, irradiance, penumbra, techniques};
+
+/// What one image shows.
+pub trait Subject: Clone {
+    /// Width and height of what is shown, metres; an image has their ratio.
+    fn sides_m(&self) -> [f64; 2];
+
+    /// The radiance shown as white on images of all of these: what is written, or else the brightest that can be seen without shadow.
+    fn white(all: &[Self], view: &View) -> f64;
+
+    /// Whether all that a timeline moves is where it is in `other`, so that both look the same.
+    fn same_staging(&self, other: &Self) -> bool;
+
+    /// Whether a pixel is in penumbra, one flag a pixel.
+    fn penumbra(&self, view: &View) -> Vec<bool>;
+
+    /// By which the radiance is the irradiance that errors are measured in: E = π L / albedo.
+    fn albedo(&self, view: &View) -> PixelAlbedo;
+
+    /// The brightest irradiance without shadow, over pixels and channels: full scale of errors.
+    fn brightest(&self, view: &View) -> f64;
+}
+
+/// Where subjects come from: a scene, as it was read.
+pub trait Staged {
+    /// What it shows.
+    type Subject: Subject;
+
+    /// What a drawing keeps of it from instant to instant.
+    type Kept: Default;
+
+    /// SHA-256 of all that its images depend on, hexadecimal.
+    fn sha256(&self) -> &str;
+
+    /// How it moves, if it does.
+    fn timeline(&self) -> Option<&Timeline>;
+
+    /// The scene as written.
+    fn still(&self) -> Self::Subject;
+
+    /// The scene at an instant of its timeline, seconds.
+    fn at(&self, time_s: f64, kept: &mut Self::Kept) -> Self::Subject;
+
+    /// All of it that white depends on, at an instant or as written; what only casts shadows need not be there.
+    fn lit(&self, time_s: Option<f64>) -> Self::Subject;
+
+    /// What draws its subjects. Errors: a knob out of range, or no adapter where there must be one.
+    fn renderer(
+        technique: &Technique,
+        backend: Backend,
+    ) -> Result<Box<dyn Renderer<Self::Subject>>, RenderError>;
+}
+
+impl Subject for Theatre {
+    fn sides_m(&self) -> [f64; 2] {
+        [self.screen.width_m, self.screen.height_m]
+    }
+
+    fn white(all: &[Self], view: &View) -> f64 {
+        exposure::white(all, view)
+    }
+
+    fn same_staging(&self, other: &Self) -> bool {
+        self.same_staging(other)
+    }
+
+    fn penumbra(&self, view: &View) -> Vec<bool> {
+        penumbra::mask(self, view)
+    }
+
+    fn albedo(&self, view: &View) -> PixelAlbedo {
+        albedo::on_grid(&self.screen, view)
+    }
+
+    fn brightest(&self, view: &View) -> f64 {
+        irradiance::brightest(self, view)
+    }
+}
+
+impl Staged for Scene {
+    type Subject = Theatre;
+    type Kept = Masks;
+
+    fn sha256(&self) -> &str {
+        self.sha256()
+    }
+
+    fn timeline(&self) -> Option<&Timeline> {
+        self.timeline()
+    }
+
+    fn still(&self) -> Theatre {
+        self.still()
+    }
+
+    fn at(&self, time_s: f64, masks: &mut Masks) -> Theatre {
+        self.theatre_at(time_s, masks)
+    }
+
+    fn lit(&self, time_s: Option<f64>) -> Theatre {
+        // Exposure does not see puppets: only the lamp's path matters.
+        let mut theatre = Theatre { planes: Vec::new(), ..self.still() };
+        if let Some(time_s) = time_s {
+            theatre.lamp.position_m = self.lamp_at(time_s);
+        }
+        theatre
+    }
+
+    fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
+        techniques::renderer(technique, backend)
+    }
+}
