@@ -34,8 +34,6 @@ fn run() -> Result<(), String> {
     let web = Path::new(&env("CARGO_MANIFEST_DIR")?).ancestors().nth(2).unwrap_or(Path::new("/")).join("web");
 
     println!("cargo::rerun-if-env-changed=KELIR_WEB_DIST");
-    // The server also embeds the stimuli folder; a file that is new there is not among the sources cargo knows.
-    println!("cargo::rerun-if-changed={}", web.join("../stimuli").display());
     if let Some(dist) = std::env::var_os("KELIR_WEB_DIST").map(PathBuf::from) {
         println!("cargo::rerun-if-changed={}", dist.display());
         return copy_bundle(&dist, &out);

@@ -1,8 +1,8 @@
-//! The rooms' walls: which crate may know which library, read from `cargo metadata`; where alone a kind of trial is known.
+//! The rooms' walls: which crate may know which other, read from `cargo metadata`; who may name what, read from the sources.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
@@ -18,12 +18,17 @@ const PURE: [&str; 7] = [
     "kelir-report",
 ];
 const IMPURE: [&str; 5] = ["tokio", "sqlx", "rusqlite", "axum", "wgpu"];
-/// Libraries that one room alone may name.
-const OWNED: [(&str, &str); 4] = [
-    ("wgpu", "kelir-render"),
-    ("sqlx", "kelir-store"),
-    ("rusqlite", "kelir-store"),
-    ("axum", "kelir-server"),
+/// What answers requests, and judges passwords for it: the house knows no HTTP.
+const HTTP: [&str; 6] = ["axum", "hyper", "tower", "tower-http", "argon2", "kelir-server"];
+/// What some rooms alone may name.
+const OWNED: [(&str, &[&str]); 7] = [
+    ("wgpu", &["kelir-render"]),
+    ("sqlx", &["kelir-store"]),
+    ("rusqlite", &["kelir-store"]),
+    ("axum", &["kelir-server"]),
+    ("kelir-render", &["kelir-house", "kelir"]),
+    ("kelir-house", &["kelir-server", "kelir"]),
+    ("kelir-server", &["kelir"]),
 ];
 
 /// Rooms that must not reach another: the reader knows nothing of what it reads, a study nothing of what is drawn.
@@ -48,9 +53,9 @@ fn violations(metadata: &Value) -> Vec<String> {
     for &member in &members {
         let name = names[member];
         let direct: BTreeSet<&str> = edges[member].iter().map(|id| names[id]).collect();
-        for (library, owner) in OWNED {
-            if direct.contains(library) && name != owner {
-                found.push(format!("{name} names {library}: only {owner} may"));
+        for (named, owners) in OWNED {
+            if direct.contains(named) && !owners.contains(&name) {
+                found.push(format!("{name} names {named}: only {} may", owners.join(" and ")));
             }
         }
         for (room, other) in APART {
@@ -58,18 +63,19 @@ fn violations(metadata: &Value) -> Vec<String> {
                 found.push(format!("{room} reaches {other}: it must know nothing of it"));
             }
         }
-        if PURE.contains(&name) {
-            let below = closure(member, &edges);
-            for library in IMPURE {
-                if below.iter().any(|id| names[id] == library) {
-                    found.push(format!("{name} reaches {library}: it must stay pure"));
-                }
-            }
+        let (unreached, why): (&[&str], _) = match name {
+            "kelir-house" => (&HTTP, "it must know no HTTP"),
+            _ if PURE.contains(&name) => (&IMPURE, "it must stay pure"),
+            _ => continue,
+        };
+        let below = closure(member, &edges);
+        for library in unreached.iter().filter(|library| below.iter().any(|id| names[id] == **library)) {
+            found.push(format!("{name} reaches {library}: {why}"));
         }
     }
-    for pure in PURE {
-        if !members.iter().any(|id| names[id] == pure) {
-            found.push(format!("{pure} is not a member: rename it here too"));
+    for room in PURE.iter().chain(OWNED.iter().flat_map(|(_, owners)| *owners)) {
+        if !members.iter().any(|id| names[id] == *room) {
+            found.push(format!("{room} is not a member: rename it here too"));
         }
     }
     found
@@ -124,29 +130,44 @@ fn rooms_keep_their_walls() {
 #[test]
 fn a_broken_wall_is_seen() {
     let mut doctored = metadata();
-    let id_of = |name: &str| {
-        let package = packages(&doctored).find(|p| p["name"] == name).expect("package");
-        package["id"].as_str().expect("id").to_owned()
-    };
-    let edges = [("kelir-stats", "axum"), ("kelir-study", "kelir-scene")].map(|(from, to)| {
-        let kinds = serde_json::json!([{"kind": null, "target": null}]);
-        (id_of(from), serde_json::json!({"name": to, "pkg": id_of(to), "dep_kinds": kinds}))
-    });
-    let nodes = doctored["resolve"]["nodes"].as_array_mut().expect("nodes");
-    for (from, edge) in edges {
-        let node = nodes.iter_mut().find(|node| node["id"] == from.as_str()).expect("node");
-        node["deps"].as_array_mut().expect("deps").push(edge);
+    for (from, to) in [
+        ("kelir-stats", "axum"),
+        ("kelir-house", "kelir-server"),
+        ("kelir-server", "kelir-render"),
+        ("kelir-study", "kelir-scene"),
+    ] {
+        add_edge(&mut doctored, from, to);
     }
     let found = violations(&doctored);
-    assert!(found.iter().any(|v| v == "kelir-stats names axum: only kelir-server may"), "{found:?}");
-    assert!(found.iter().any(|v| v == "kelir-stats reaches axum: it must stay pure"), "{found:?}");
-    let apart = "kelir-study reaches kelir-scene: it must know nothing of it";
-    assert!(found.iter().any(|v| v == apart), "{found:?}");
-    // axum brings tokio, and study builds on stats: both are seen through the chain.
-    assert!(found.iter().any(|v| v == "kelir-stats reaches tokio: it must stay pure"), "{found:?}");
+    for broken in [
+        "kelir-stats names axum: only kelir-server may",
+        "kelir-stats reaches axum: it must stay pure",
+        // axum brings tokio, and study builds on stats: both are seen through the chain.
+        "kelir-stats reaches tokio: it must stay pure",
+        "kelir-house names kelir-server: only kelir may",
+        "kelir-house reaches hyper: it must know no HTTP",
+        "kelir-house reaches argon2: it must know no HTTP",
+        "kelir-server names kelir-render: only kelir-house and kelir may",
+        "kelir-study reaches kelir-scene: it must know nothing of it",
+    ] {
+        assert!(found.iter().any(|v| v == broken), "{broken}: {found:?}");
+    }
 }
 
-/// What the server may name of the renderer: the door, and what goes in and comes out by it.
+/// Makes one package depend on another.
+fn add_edge(metadata: &mut Value, from: &str, to: &str) {
+    let id_of = |name: &str| {
+        let package = packages(metadata).find(|p| p["name"] == name).expect("package");
+        package["id"].as_str().expect("id").to_owned()
+    };
+    let (from, to) = (id_of(from), id_of(to));
+    let edge = serde_json::json!({"name": "added", "pkg": to, "dep_kinds": [{"kind": null, "target": null}]});
+    let nodes = metadata["resolve"]["nodes"].as_array_mut().expect("nodes");
+    let node = nodes.iter_mut().find(|node| node["id"] == from.as_str()).expect("node");
+    node["deps"].as_array_mut().expect("deps").push(edge);
+}
+
+/// What the house may name of the renderer: the door, and what goes in and comes out by it.
 const DOOR: [&str; 7] = ["job", "camera", "Backend", "Pixel", "RenderError", "Technique", "View"];
 
 /// The first names that a text has behind `prefix`, lists in braces apart.
@@ -187,27 +208,27 @@ fn past_the_door(text: &str) -> Vec<String> {
     named.filter(|name| !DOOR.contains(&name.as_str())).collect()
 }
 
-/// Rust files below a folder, each with its text.
-fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
-    let (mut found, mut open) = (Vec::new(), vec![folder.to_owned()]);
+/// Rust and TypeScript files below these folders of the project, each by its path there and with its text.
+fn sources(folders: &[&str]) -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("root");
+    let (mut found, mut open) = (Vec::new(), folders.iter().map(|f| root.join(f)).collect::<Vec<_>>());
     while let Some(path) = open.pop() {
         if path.is_dir() {
             open.extend(fs::read_dir(&path).expect("folder").map(|entry| entry.expect("entry").path()));
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
-            let text = fs::read_to_string(&path).expect("text");
-            found.push((path, text));
+        } else if path.extension().is_some_and(|e| e == "rs" || e == "ts") {
+            let name = path.strip_prefix(root).expect("below").to_string_lossy().into_owned();
+            found.push((name, fs::read_to_string(&path).expect("text")));
         }
     }
     found
 }
 
 #[test]
-fn the_server_reaches_the_renderer_through_one_door() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("root");
-    let sources = sources(&root.join("crates/server/src"));
+fn the_house_reaches_the_renderer_through_one_door() {
+    let sources = sources(&["crates/house/src"]);
     let past: Vec<_> = sources
         .iter()
-        .flat_map(|(path, text)| past_the_door(text).into_iter().map(move |n| (path, n)))
+        .flat_map(|(name, text)| past_the_door(text).into_iter().map(move |past| (name, past)))
         .collect();
     assert_eq!(past, []);
     assert!(sources.iter().any(|(_, text)| text.contains("kelir_render::job")), "the door has another name");
@@ -237,20 +258,18 @@ fn known_techniques(file: &str, text: &str, techniques: &BTreeSet<String>) -> Ve
 
 #[test]
 fn techniques_do_not_know_each_other() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/render/src");
-    let techniques: BTreeSet<String> = fs::read_dir(src.join("techniques"))
+    const SRC: &str = "crates/render/src";
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("root");
+    let techniques: BTreeSet<String> = fs::read_dir(root.join(SRC).join("techniques"))
         .expect("techniques")
         .map(|entry| entry.expect("an entry"))
         .filter(|entry| entry.path().is_dir())
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();
     assert!(techniques.len() >= 5, "{techniques:?}");
-    let known: Vec<String> = sources(&src)
+    let known: Vec<String> = sources(&[SRC])
         .iter()
-        .flat_map(|(path, text)| {
-            let file = path.strip_prefix(&src).expect("below").to_string_lossy().replace('\\', "/");
-            known_techniques(&file, text, &techniques)
-        })
+        .flat_map(|(path, text)| known_techniques(&path[SRC.len() + 1..], text, &techniques))
         .collect();
     assert_eq!(known, Vec::<String>::new());
 
@@ -263,32 +282,36 @@ fn techniques_do_not_know_each_other() {
     assert_eq!(known_techniques("techniques/points/tests.rs", text, &techniques), Vec::<String>::new());
 }
 
+#[test]
+fn commands_that_answer_no_requests_need_no_server() {
+    let sources = sources(&["crates/cli/src"]);
+    let named: Vec<&str> =
+        sources.iter().filter(|(_, text)| text.contains("kelir_server")).map(|(name, _)| &**name).collect();
+    let may = |name: &&str| {
+        *name == "crates/cli/src/commands/serve.rs" || name.starts_with("crates/cli/src/commands/bench/")
+    };
+    assert!(named.iter().all(may), "{named:?}");
+    assert!(named.contains(&"crates/cli/src/commands/serve.rs"), "the server has another name: {named:?}");
+}
+
 /// Where a kind of trial may be named outside its own folders: what wrote and reads the first layout knew one kind.
 const OF_THE_FIRST_LAYOUT: [&str; 2] = ["crates/store/src/first_chain.rs", "crates/store/src/upgrade.rs"];
 
 /// Files of these folders that name one of the kinds, as `file: name`. Tests may.
-fn naming_kinds(root: &Path, kinds: &[String]) -> Vec<String> {
+fn naming_kinds(kinds: &[String]) -> Vec<String> {
     let mut found = Vec::new();
-    let mut open: Vec<PathBuf> =
-        ["crates", "web/participant", "web/console", "web/shared"].map(|f| root.join(f)).into();
-    while let Some(path) = open.pop() {
-        let name = path.strip_prefix(root).expect("below").to_string_lossy().into_owned();
-        let of_a_kind =
-            name == "crates/study/src/trials" || kinds.iter().any(|k| name.ends_with(&format!("trials/{k}")));
-        let file = path.file_stem().expect("a name").to_string_lossy();
-        if of_a_kind || ["tests", "node_modules"].contains(&&*file) || OF_THE_FIRST_LAYOUT.contains(&&*name) {
+    for (name, text) in sources(&["crates", "web/participant", "web/console", "web/shared"]) {
+        let of_a_kind = name.starts_with("crates/study/src/trials/")
+            || kinds.iter().any(|kind| name.contains(&format!("trials/{kind}/")));
+        let of_tests = name.split('/').any(|part| part == "tests" || part == "tests.rs");
+        if of_a_kind || of_tests || OF_THE_FIRST_LAYOUT.contains(&&*name) {
             continue;
         }
-        if path.is_dir() {
-            open.extend(fs::read_dir(&path).expect("folder").map(|entry| entry.expect("entry").path()));
-        } else if path.extension().is_some_and(|e| e == "rs" || e == "ts") {
-            let text = fs::read_to_string(&path).expect("text");
-            let named = |kind: &String| {
-                let variant: String = kind.split('-').map(|w| w[..1].to_uppercase() + &w[1..]).collect();
-                text.contains(&format!("\"{kind}\"")) || text.contains(&variant)
-            };
-            found.extend(kinds.iter().filter(|k| named(k)).map(|kind| format!("{name}: {kind}")));
-        }
+        let named = |kind: &String| {
+            let variant: String = kind.split('-').map(|w| w[..1].to_uppercase() + &w[1..]).collect();
+            text.contains(&format!("\"{kind}\"")) || text.contains(&variant)
+        };
+        found.extend(kinds.iter().filter(|k| named(k)).map(|kind| format!("{name}: {kind}")));
     }
     found
 }
@@ -307,7 +330,7 @@ fn a_kind_of_trial_is_a_variant_and_a_folder() {
     for kind in &kinds {
         assert!(list.contains(&format!("= \"{kind}\",")), "{kind} has a folder and no name");
     }
-    assert_eq!(naming_kinds(root, &kinds), Vec::<String>::new());
+    assert_eq!(naming_kinds(&kinds), Vec::<String>::new());
     // Control: a word that many files have is found in them.
-    assert!(!naming_kinds(root, &["studies".to_owned()]).is_empty());
+    assert!(!naming_kinds(&["studies".to_owned()]).is_empty());
 }

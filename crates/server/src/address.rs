@@ -1,31 +1,13 @@
 //! Where a request comes from, and counts of what one address did, which hold no address.
 
-use crate::app::App;
 use crate::proxies::TrustedProxies;
-use axum::extract::{ConnectInfo, FromRequestParts};
 use axum::http::HeaderMap;
-use axum::http::request::Parts;
 use hmac::{Hmac, KeyInit, Mac};
 use sha2::Sha256;
 use std::collections::{HashMap, VecDeque};
-use std::convert::Infallible;
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::net::{IpAddr, Ipv6Addr, SocketAddr};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
-
-/// The address that a request comes from: its connection's, or the one that a trusted proxy names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct ClientAddress(pub(crate) IpAddr);
-
-impl FromRequestParts<Arc<App>> for ClientAddress {
-    type Rejection = Infallible;
-
-    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Infallible> {
-        let connection = parts.extensions.get::<ConnectInfo<SocketAddr>>();
-        let peer = connection.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |ConnectInfo(peer)| peer.ip());
-        Ok(ClientAddress(client_address(peer, &parts.headers, &app.trusted_proxies)))
-    }
-}
 
 /// The last address of `X-Forwarded-For` that no trusted proxy has; the connection's own where its other end is not trusted.
 pub(crate) fn client_address(peer: IpAddr, headers: &HeaderMap, trusted: &TrustedProxies) -> IpAddr {
@@ -175,6 +157,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
     use super::*;
+    use std::net::Ipv4Addr;
 
     fn client(peer: &str, lines: &[&str], trusted: &[&str]) -> String {
         let trusted = TrustedProxies::parse(trusted.iter().copied()).unwrap();

@@ -1,19 +1,18 @@
 //! What the handlers share.
 
 use crate::address::Tally;
-use crate::api::{Problem, ProblemCode};
-use crate::error::StudyFileError;
-use crate::integrity::Integrity;
-use crate::library::Library;
+use crate::api::Problem;
+use crate::config::ServerConfig;
+use crate::findings::Findings;
 use crate::limiter::Limiter;
-use crate::links::Links;
-use crate::making::{Maker, Making, StimulusMap};
+use crate::loaded::{Begun, BrokenStudy, LoadedStudy, Stimuli, closed};
 use crate::presenting::Presenter;
 use crate::previews::Previews;
 use crate::proxies::TrustedProxies;
-use crate::selection::{Selection, SelectionError, VersionRef, With};
-use crate::server::ServerConfig;
-use kelir_store::{Session, Store, StoreError, StoredAnswers, sha256_hex};
+use kelir_house::links::Links;
+use kelir_house::selection::{Selection, SelectionError, VersionRef, With};
+use kelir_house::{Library, Maker};
+use kelir_store::{Session, Store, StoreError, StoredAnswers};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::Answers;
 use std::collections::{BTreeMap, HashMap};
@@ -35,7 +34,7 @@ pub(crate) struct App {
     pub(crate) limiter: Limiter,
     /// Sessions begun, by address.
     pub(crate) starts: Tally,
-    pub(crate) integrity: Integrity,
+    pub(crate) integrity: Findings,
     pub(crate) presenter: Presenter,
     /// argon2 takes 19 MiB and a core for each password it judges.
     pub(crate) judging: Semaphore,
@@ -53,66 +52,8 @@ pub(crate) struct App {
     answers: tokio::sync::Mutex<HashMap<Vec<String>, StoredAnswers>>,
 }
 
-/// What a session goes on with: the file that it began with, and what its version shows.
-#[derive(Clone)]
-pub(crate) struct Begun {
-    pub(crate) study: Arc<StudyDefinition>,
-    pub(crate) stimuli: Arc<StimulusMap>,
-}
-
 /// Selections of versions whose answers are kept.
 const MOST_KEPT: usize = 32;
-
-/// A study whose file is wrong: it is not served, and the console says why.
-#[derive(Debug)]
-pub(crate) struct BrokenStudy {
-    pub(crate) id: String,
-    /// SHA-256 of the file as it is; empty where it cannot be read.
-    pub(crate) file_hash: String,
-    /// Everything that is wrong with it: field, value, rule.
-    pub(crate) reason: String,
-}
-
-impl BrokenStudy {
-    pub(crate) fn new(library: &Library, path: &str, error: &StudyFileError) -> BrokenStudy {
-        let name = path.rsplit('/').next().unwrap_or(path);
-        BrokenStudy {
-            id: name.strip_suffix(".toml").unwrap_or(name).to_owned(),
-            file_hash: library.read(path).map(|bytes| sha256_hex(&bytes)).unwrap_or_default(),
-            reason: error.to_string(),
-        }
-    }
-}
-
-/// A study that is being served.
-pub(crate) struct LoadedStudy {
-    pub(crate) study: Arc<StudyDefinition>,
-    pub(crate) file_hash: String,
-    /// What may be a mistake in it.
-    pub(crate) warnings: Vec<String>,
-    stimuli: RwLock<Stimuli>,
-}
-
-/// A study's version with all that it shows.
-#[derive(Debug)]
-pub(crate) struct Served {
-    pub(crate) version: String,
-    pub(crate) stimuli: Arc<StimulusMap>,
-}
-
-/// How far a study's stimuli are.
-#[derive(Clone, Debug)]
-pub(crate) enum Stimuli {
-    Preparing(Option<Making>),
-    Ready(Arc<Served>),
-    Failed(String),
-}
-
-/// What may be a mistake in a study that is good.
-fn warnings(library: &Library, study: &StudyDefinition) -> Vec<String> {
-    let warnings = library.warnings(&format!("studies/{}.toml", study.id), study);
-    warnings.iter().map(ToString::to_string).collect()
-}
 
 impl App {
     pub(crate) fn new(
@@ -123,13 +64,8 @@ impl App {
         config: &ServerConfig,
         links: Links,
     ) -> App {
-        let loaded = |study: StudyDefinition| LoadedStudy {
-            file_hash: study.file_hash(),
-            warnings: warnings(&library, &study),
-            stimuli: RwLock::new(Stimuli::Preparing(None)),
-            study: Arc::new(study),
-        };
-        let studies = studies.into_iter().map(|study| (study.id.clone(), loaded(study))).collect();
+        let loaded = |study: StudyDefinition| (study.id.clone(), LoadedStudy::new(&library, study));
+        let studies = studies.into_iter().map(loaded).collect();
         App {
             store,
             library,
@@ -139,7 +75,7 @@ impl App {
             studies,
             limiter: Limiter::default(),
             starts: Tally::new(STARTS_WITHIN),
-            integrity: Integrity::default(),
+            integrity: Findings::default(),
             presenter: Presenter::default(),
             judging: Semaphore::new(2),
             reporting: Semaphore::new(1),
@@ -227,41 +163,5 @@ impl App {
         let stored = kept.entry(key).or_insert_with(new);
         self.store.read_on(stored).await?;
         Ok(stored.answers())
-    }
-}
-
-/// How long a session of a study may be silent and still hold its place.
-pub(crate) fn idle(study: &StudyDefinition) -> Duration {
-    Duration::from_secs(60 * u64::from(study.idle_minutes))
-}
-
-/// What participants are told of a study that cannot be taken; the console and the log say why.
-fn closed() -> Box<Problem> {
-    let detail = "This study can't be taken at the moment. The researchers see the reason in their console.";
-    Problem::new(ProblemCode::StimuliFailed, detail)
-}
-
-impl LoadedStudy {
-    pub(crate) fn stimuli(&self) -> Stimuli {
-        self.stimuli.read().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    pub(crate) fn set_stimuli(&self, stimuli: Stimuli) {
-        *self.stimuli.write().unwrap_or_else(PoisonError::into_inner) = stimuli;
-    }
-
-    /// The version with its stimuli, or the answer that says they are not ready.
-    pub(crate) fn ready(&self) -> Result<Arc<Served>, Box<Problem>> {
-        match self.stimuli() {
-            Stimuli::Ready(served) => Ok(served),
-            Stimuli::Preparing(making) => {
-                let (done, total) = making.map_or((0, 0), |m| (m.done, m.total));
-                let detail = format!(
-                    "This study's images are still being made ({done} of {total} ready). Please come back shortly."
-                );
-                Err(Problem::new(ProblemCode::NotReady, detail).retry_after(5))
-            }
-            Stimuli::Failed(_) => Err(closed()),
-        }
     }
 }

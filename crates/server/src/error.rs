@@ -1,24 +1,6 @@
 //! The errors of starting.
 
 use kelir_store::StoreError;
-use kelir_study::Problems;
-use std::path::PathBuf;
-
-/// Why a study file cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum StudyFileError {
-    /// Everything that is wrong with it, its scenes, conditions and pictures included.
-    #[error("{0}")]
-    Invalid(#[from] Problems),
-    /// It cannot be read.
-    #[error("{path}: {source}")]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-}
 
 /// Why the server did not start.
 #[derive(Debug, thiserror::Error)]

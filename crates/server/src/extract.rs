@@ -1,16 +1,19 @@
 //! What handlers take from a request, typed and checked; each refusal is a problem document.
 
+use crate::address::client_address;
 use crate::api::{Problem, ProblemCode};
 use crate::app::App;
 use axum::body::Bytes;
 use axum::extract::rejection::{BytesRejection, PathRejection};
-use axum::extract::{FromRequest, FromRequestParts, Path, RawPathParams, Request};
+use axum::extract::{ConnectInfo, FromRequest, FromRequestParts, Path, RawPathParams, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_store::{Session, sha256_hex};
 use kelir_study::schema::{FieldError, Record};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use std::convert::Infallible;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 use utoipa::openapi::path::{Parameter, ParameterIn};
 use utoipa::{IntoParams, ToSchema};
@@ -161,6 +164,9 @@ impl<S: Send + Sync> FromRequestParts<S> for Token {
     }
 }
 
+/// The cookie that holds a researcher's token.
+pub(crate) const COOKIE: &str = "kelir_session";
+
 /// The value of one cookie.
 pub(crate) fn cookie<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
     headers
@@ -220,7 +226,7 @@ impl FromRequestParts<Arc<App>> for SignedIn {
     type Rejection = Box<Problem>;
 
     async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Box<Problem>> {
-        match cookie(&parts.headers, crate::routes::COOKIE) {
+        match cookie(&parts.headers, COOKIE) {
             Some(token) => Ok(SignedIn(app.store.signed_in(&sha256_hex(token.as_bytes())).await?)),
             None => Ok(SignedIn(None)),
         }
@@ -237,5 +243,19 @@ impl FromRequestParts<Arc<App>> for Researcher {
         let sign_in = || Problem::new(ProblemCode::Unauthorized, "Sign in first.");
         let SignedIn(name) = SignedIn::from_request_parts(parts, app).await?;
         name.map(Researcher).ok_or_else(sign_in)
+    }
+}
+
+/// The address that a request comes from: its connection's, or the one that a trusted proxy names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ClientAddress(pub(crate) IpAddr);
+
+impl FromRequestParts<Arc<App>> for ClientAddress {
+    type Rejection = Infallible;
+
+    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Infallible> {
+        let connection = parts.extensions.get::<ConnectInfo<SocketAddr>>();
+        let peer = connection.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |ConnectInfo(peer)| peer.ip());
+        Ok(ClientAddress(client_address(peer, &parts.headers, &app.trusted_proxies)))
     }
 }

@@ -1,8 +1,7 @@
 //! What every answer carries, and what is refused before anything is touched.
 
 use crate::api::{Problem, ProblemCode};
-use crate::extract::cookie;
-use crate::routes::COOKIE;
+use crate::extract::{COOKIE, cookie};
 use axum::extract::{MatchedPath, Request};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Uri, header};
 use axum::middleware::Next;

@@ -2,40 +2,18 @@
 //!
 //! Answers are taken whatever is found here. A study whose stimuli are damaged for good pauses: nobody begins it until they are back.
 
-use crate::app::{App, LoadedStudy, Served, Stimuli};
+use crate::app::App;
 use crate::audit::AUDIT;
-use crate::making;
-use kelir_store::{ANIMATION, StoreError, Trouble};
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use crate::loaded::{LoadedStudy, Served, Stimuli};
+use kelir_house::making::{is_whole, make};
+use kelir_store::Trouble;
+use std::sync::Arc;
 use std::time::Duration;
-use tokio::sync::Notify;
 
 /// Between two looks.
 const EVERY: Duration = Duration::from_secs(3600);
 /// At least so long between two looks, however often somebody asks for one.
 const REST: Duration = Duration::from_secs(30);
-
-/// What the last look found.
-#[derive(Debug, Default)]
-pub(crate) struct Integrity {
-    faults: Mutex<Vec<String>>,
-    /// Studies that paused, with what they show.
-    paused: Mutex<BTreeMap<String, Arc<Served>>>,
-    asked: Notify,
-}
-
-impl Integrity {
-    /// What is wrong, in sentences; nothing where all is well.
-    pub(crate) fn faults(&self) -> Vec<String> {
-        self.faults.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    /// Something was missed or damaged: look soon.
-    pub(crate) fn ask(&self) {
-        self.asked.notify_one();
-    }
-}
 
 /// Looks again and again, for as long as the server runs.
 pub(crate) async fn watch(app: Arc<App>) {
@@ -44,7 +22,7 @@ pub(crate) async fn watch(app: Arc<App>) {
         tokio::time::sleep(REST).await;
         tokio::select! {
             () = tokio::time::sleep(EVERY) => {}
-            () = app.integrity.asked.notified() => {}
+            () = app.integrity.asked() => {}
         }
     }
 }
@@ -56,10 +34,7 @@ pub(crate) async fn look(app: &App) {
         faults.extend(of_chain(app, &loaded.study.id).await);
         faults.extend(of_stimuli(app, loaded).await);
     }
-    let before = {
-        let mut known = app.integrity.faults.lock().unwrap_or_else(PoisonError::into_inner);
-        std::mem::replace(&mut *known, faults.clone())
-    };
+    let before = app.integrity.note(faults.clone());
     for fault in faults.iter().filter(|fault| !before.contains(fault)) {
         tracing::error!(target: AUDIT, "integrity: {fault}");
     }
@@ -94,8 +69,7 @@ async fn of_chain(app: &App, study: &str) -> Option<String> {
 /// What is wrong with a study's stimuli after mending. A study pauses where something is, and goes on once it is not.
 async fn of_stimuli(app: &App, loaded: &LoadedStudy) -> Option<String> {
     let id = &loaded.study.id;
-    let paused = || app.integrity.paused.lock().unwrap_or_else(PoisonError::into_inner);
-    let known = paused().get(id).cloned();
+    let known = app.integrity.paused().get(id).cloned();
     let (served, was_paused) = match (loaded.stimuli(), known) {
         (Stimuli::Ready(served), _) => (served, false),
         (Stimuli::Failed(_), Some(served)) => (served, true),
@@ -108,7 +82,7 @@ async fn of_stimuli(app: &App, loaded: &LoadedStudy) -> Option<String> {
                 tracing::warn!(target: AUDIT, study = id, "integrity: {count} damaged stimuli were made again");
             }
             if was_paused {
-                paused().remove(id);
+                app.integrity.paused().remove(id);
                 loaded.set_stimuli(Stimuli::Ready(served));
             }
             None
@@ -116,7 +90,7 @@ async fn of_stimuli(app: &App, loaded: &LoadedStudy) -> Option<String> {
         Err(reason) => {
             let reason = format!("it is paused, because stimuli are damaged: {reason}");
             loaded.set_stimuli(Stimuli::Failed(reason.clone()));
-            paused().insert(id.clone(), served);
+            app.integrity.paused().insert(id.clone(), served);
             Some(format!("Study {id}: {reason}"))
         }
     }
@@ -126,14 +100,14 @@ async fn of_stimuli(app: &App, loaded: &LoadedStudy) -> Option<String> {
 async fn mended(app: &App, loaded: &LoadedStudy, served: &Served) -> Result<usize, String> {
     let mut damaged = Vec::new();
     for stimulus in served.stimuli.all() {
-        if !is_whole(app, &stimulus.sha256).await.map_err(|error| error.to_string())? {
+        if !is_whole(&app.store, &stimulus.sha256).await.map_err(|error| error.to_string())? {
             damaged.push(stimulus);
         }
     }
     if damaged.is_empty() {
         return Ok(0);
     }
-    let made = making::make(&loaded.study, &app.store, &app.library, &app.maker, &|_| {}).await;
+    let made = make(&loaded.study, &app.store, &app.library, &app.maker, &|_| {}).await;
     let made = made.map_err(|error| error.to_string())?;
     for stimulus in &damaged {
         let again = made.of(&stimulus.item, &stimulus.condition).map_err(|error| error.to_string())?;
@@ -145,18 +119,4 @@ async fn mended(app: &App, loaded: &LoadedStudy, served: &Served) -> Result<usiz
         }
     }
     Ok(damaged.len())
-}
-
-/// Whether a stimulus and all that it names are stored as they were.
-async fn is_whole(app: &App, sha256: &str) -> Result<bool, StoreError> {
-    let mut wanted = vec![sha256.to_owned()];
-    while let Some(sha256) = wanted.pop() {
-        match app.store.stimulus(&sha256).await {
-            Ok(Some((media_type, bytes))) if media_type == ANIMATION => wanted.extend(making::frames(&bytes)),
-            Ok(Some(_)) => {}
-            Ok(None) | Err(StoreError::Damaged { .. }) => return Ok(false),
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(true)
 }

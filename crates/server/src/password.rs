@@ -100,11 +100,6 @@ pub(crate) fn random_code(n: usize) -> String {
     code
 }
 
-/// A secret of 244 random bits for a browser to hold.
-pub(crate) fn random_token() -> String {
-    format!("{}{}", uuid::Uuid::new_v4().simple(), uuid::Uuid::new_v4().simple())
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]

@@ -7,6 +7,7 @@ use crate::api::{Problem, StimulusRef};
 use crate::content::ByteCache;
 use axum::body::Bytes;
 use hmac::{Hmac, KeyInit, Mac};
+use kelir_house::TAIL;
 use kelir_store::{Packing, PlannedTrial, Session, StimulusHashes, Store, sha256_hex};
 use kelir_study::trials::Role;
 use sha2::{Digest, Sha256};
@@ -18,8 +19,6 @@ use std::sync::{Mutex, PoisonError, RwLock};
 const MOST_BYTES: usize = 64 << 20;
 /// Most addresses that are held in memory; one that is not is found again from its session.
 const MOST_ADDRESSES: usize = 200_000;
-/// Length of what is a session's own at the end of its bytes.
-pub(crate) const TAIL: usize = 32;
 
 /// The session, or the preview, that is told.
 #[derive(Clone, Copy, Debug)]

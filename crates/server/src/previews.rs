@@ -1,6 +1,6 @@
 //! Previews: a study taken in memory. Nothing of them is stored, and they hold no place in the design.
 
-use crate::app::Begun;
+use crate::loaded::Begun;
 use kelir_store::{NextTrials, PlannedTrial, Progress};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};

@@ -1,20 +1,20 @@
 //! Opening, starting and stopping.
 
-use crate::app::{App, BrokenStudy, LoadedStudy, Served, Stimuli};
+use crate::app::App;
 use crate::audit::AUDIT;
+use crate::config::ServerConfig;
 use crate::connections::{self, Guard, Routes};
 use crate::error::StartError;
-use crate::library::Library;
-use crate::links::Links;
-use crate::making::{self, Maker, Making};
+use crate::loaded::{BrokenStudy, LoadedStudy, Served, Stimuli};
 use crate::password::{self, PasswordSource};
-use crate::proxies::TrustedProxies;
 use crate::{integrity, routes, starting};
 use axum::Router;
+use kelir_house::Library;
+use kelir_house::links::Links;
+use kelir_house::making::{Making, make};
 use kelir_store::Store;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Duration;
@@ -25,24 +25,6 @@ use tokio::task::JoinHandle;
 /// How long requests under way may take once the server is asked to stop, and the database after them.
 const GRACE: Duration = Duration::from_secs(10);
 const CLOSING: Duration = Duration::from_secs(3);
-
-/// What a server is started with.
-pub struct ServerConfig {
-    /// Folder of the database, the stimuli and own studies; made if need be.
-    pub data: PathBuf,
-    /// Address to listen on; port 0 takes a free one.
-    pub listen: SocketAddr,
-    /// The researcher's password in place of the generated one.
-    pub password: Option<String>,
-    /// Whether cookies are sent over HTTPS alone; for a server behind TLS.
-    pub secure_cookies: bool,
-    /// Proxies whose `X-Forwarded-For` is believed.
-    pub trusted_proxies: TrustedProxies,
-    /// Who draws the stimuli.
-    pub maker: Arc<dyn Maker>,
-    /// Told how far the stimuli are; called from a worker thread.
-    pub progress: Arc<dyn Fn(Making) + Send + Sync>,
-}
 
 /// A data folder with its studies, ready to answer requests.
 #[derive(Clone)]
@@ -133,7 +115,7 @@ impl Server {
                 progress(making);
             };
             let app = &self.app;
-            match making::make(&loaded.study, &app.store, &app.library, &app.maker, &report).await {
+            match make(&loaded.study, &app.store, &app.library, &app.maker, &report).await {
                 Ok(stimuli) => {
                     // The version is fixed when all that it shows is there.
                     let version = app.store.put_version(&loaded.study, &stimuli.all()).await;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Subcommand;
-use kelir_server::results;
+use kelir_house::results;
 use kelir_store::ChainReport;
 
 use super::stored::{block_on, results_error};

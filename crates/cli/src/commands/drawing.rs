@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::ValueEnum;
 use clap::builder::PossibleValuesParser;
+use kelir_house::shipped;
 use kelir_render::exposure::Rule;
 use kelir_render::job::{Job, Output};
 use kelir_render::{Backend, Pixel, RenderError, Technique, View};
 use kelir_scene::{Scene, Theatre};
-use kelir_server::shipped;
 use serde::Serialize;
 
 use super::knobs::Turned;

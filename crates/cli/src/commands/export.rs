@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
-use kelir_render::file::write_atomic;
-use kelir_server::{
-    Selection, Store, codebook_csv, codebook_of, events_table, participants_table, responses_csv,
-    results::pairs_csv, spreadsheet,
+use kelir_house::selection::Selection;
+use kelir_house::{
+    codebook_csv, codebook_of, events_table, pairs_csv, participants_table, responses_csv, spreadsheet,
 };
+use kelir_render::file::write_atomic;
+use kelir_store::Store;
 use kelir_study::columns::{events_codebook, participants_codebook};
 
 use super::stored::{Stored, block_on};

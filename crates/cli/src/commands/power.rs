@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use kelir_server::shipped::{Shipped, is_file};
+use kelir_house::shipped::{Shipped, is_file};
 use kelir_study::StudyDefinition;
 use kelir_study::power::{Design, DesignFile, Needed, Power, Rate, power};
 

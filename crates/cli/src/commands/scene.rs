@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
+use kelir_house::shipped::{self, SceneRefused, Shipped};
 use kelir_scene::Scene;
-use kelir_server::shipped::{self, SceneRefused, Shipped};
 use serde::Serialize;
 use serde_json::json;
 

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::Result;
-use kelir_server::{Handle, Making, PasswordSource, RenderMaker, Server, ServerConfig, TrustedProxies};
+use kelir_house::RenderMaker;
+use kelir_house::making::Making;
+use kelir_server::{Handle, PasswordSource, Server, ServerConfig, TrustedProxies};
 use kelir_store::FolderLock;
 
 use crate::log::Log;

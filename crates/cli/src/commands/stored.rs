@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
+use kelir_house::results::{self, ResultsError};
+use kelir_house::selection::{Include, Selection, SelectionError, VersionRef, With};
 use kelir_report::StudyReport;
-use kelir_server::results::{self, ResultsError};
-use kelir_server::{Include, Selection, SelectionError, Store, VersionRef, With};
+use kelir_store::Store;
 
 use crate::bad_input;
 

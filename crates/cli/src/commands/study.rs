@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use kelir_server::links::{Links, Visit, now};
-use kelir_server::shipped::{Shipped, is_file};
-use kelir_server::{HEAVY_BYTES, Library, SLOW_BITS_PER_S, StudyFileError, Weight, library_of, results};
+use kelir_house::links::{Links, Visit, now};
+use kelir_house::shipped::{Shipped, is_file};
+use kelir_house::versions::versions as versions_of;
+use kelir_house::{HEAVY_BYTES, Library, SLOW_BITS_PER_S, StudyFileError, Weight, library_of, results};
 use kelir_study::Problem;
 use serde_json::json;
 
@@ -103,7 +104,7 @@ fn link(study: &str, kind: LinkKind, days: u32, data: &Path) -> Result<(String, 
 fn versions(study: &str, data: &Path, format: Format) -> Result<()> {
     let versions = block_on(async {
         let store = results::open_study(data, study).await.map_err(results_error)?;
-        let versions = results::versions(&store, study, None).await;
+        let versions = versions_of(&store, study, None).await;
         store.close().await;
         Ok(versions?)
     })?;

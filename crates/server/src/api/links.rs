@@ -1,6 +1,6 @@
 //! Links by which a study is tried.
 
-use crate::links::Visit;
+use kelir_house::links::Visit;
 use kelir_study::schema::worded;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

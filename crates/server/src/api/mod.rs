@@ -13,6 +13,7 @@ mod versions;
 
 pub use auth::{SignIn, SignedIn};
 pub use integrity::IntegrityReport;
+pub use kelir_house::versions::StudyVersion;
 pub use kelir_study::trials::Answer;
 pub use links::{Link, NewLink, Trying, VisitKind};
 pub use lists::ListQuery;
@@ -21,9 +22,7 @@ pub use sessions::{
     Acknowledgement, Completion, CreatedSession, Held, Known, NewSession, SessionState, SessionStatus,
     SizedStimuli, StimulusRef, Trial,
 };
-pub use studies::{
-    Codebook, Display, Progress, Study, StudyList, StudyStatus, StudySummary, StudyVersion, VersionList,
-};
+pub use studies::{Codebook, Display, Progress, Study, StudyList, StudyStatus, StudySummary, VersionList};
 pub use versions::{Pooling, version_ref};
 
 pub(crate) use refusals::{refusals, responses};

@@ -1,5 +1,6 @@
 //! Studies and their versions.
 
+use kelir_house::versions::StudyVersion;
 use kelir_report::Participants;
 use kelir_study::schema::{Column, worded};
 use kelir_study::trials::TrialName;
@@ -99,29 +100,6 @@ pub struct StudySummary {
     pub most_trials: usize,
     /// How many people take part in the version that is served.
     pub participants: Participants,
-}
-
-/// A version of a study: what was asked and what was shown.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-pub struct StudyVersion {
-    /// Its hash.
-    pub version: String,
-    /// Hash of its definition alone.
-    pub design_hash: String,
-    /// Title at the time.
-    pub title: String,
-    /// Whether it is the one that is served.
-    pub is_current: bool,
-    /// When it was first served, ISO-8601 UTC.
-    pub first_served_at: String,
-    /// When it was last loaded to be served, ISO-8601 UTC.
-    pub last_served_at: String,
-    /// How many people took part in it.
-    pub participants: Participants,
-    /// Answers to it.
-    pub answers: u64,
-    /// Stimuli that it shows.
-    pub stimuli: usize,
 }
 
 /// One page of the studies.

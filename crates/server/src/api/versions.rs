@@ -1,7 +1,7 @@
 //! Which version of a study is meant, and which others count with it.
 
 use super::{Problem, ProblemCode};
-use crate::selection::{INCLUDE_RULE, Include, RULE, SelectionError, VersionRef, With};
+use kelir_house::selection::{INCLUDE_RULE, Include, RULE, SelectionError, VersionRef, With};
 use serde::Deserialize;
 use utoipa::IntoParams;
 

@@ -1,21 +1,19 @@
 //! Signing researchers in and out.
 
 use super::{Answered, Fresh, no_content};
-use crate::address::ClientAddress;
 use crate::api::{Problem, ProblemCode, SignIn, SignedIn, refusals};
 use crate::app::App;
 use crate::audit::AUDIT;
-use crate::extract::{Body, Researcher, cookie};
-use crate::password::{RESEARCHER, random_token, verify};
+use crate::extract::{Body, COOKIE, ClientAddress, Researcher, cookie};
+use crate::password::{RESEARCHER, verify};
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
+use kelir_house::random_token;
 use kelir_store::sha256_hex;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The cookie that holds a researcher's token.
-pub(crate) const COOKIE: &str = "kelir_session";
 const LASTING: Duration = Duration::from_secs(12 * 3600);
 
 refusals!(NotSignedIn: BadBody, BadJson, NotJson, TooLarge, InvalidField, WrongPassword);

@@ -1,8 +1,8 @@
 //! The OpenAPI document: what every operation says of itself, in one file.
 
-use super::COOKIE;
 use crate::api::{Problem, refusals};
 use crate::app::App;
+use crate::extract::COOKIE;
 use crate::viewer;
 use axum::http::header;
 use axum::response::{IntoResponse, Redirect};

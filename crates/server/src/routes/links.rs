@@ -5,9 +5,9 @@ use super::{Answered, Fresh};
 use crate::api::{Link, NewLink, Problem, ProblemCode, VisitKind, refusals};
 use crate::app::App;
 use crate::extract::{Body, Parameters, Researcher, SignedIn};
-use crate::links::{Pairs, Visit, now};
 use axum::extract::{RawQuery, State};
 use axum::http::Uri;
+use kelir_house::links::{Pairs, Visit, now};
 use std::sync::Arc;
 
 refusals!(NoLink: Unauthorized, NotFound, BadBody, BadJson, NotJson, TooLarge, InvalidField);

@@ -14,7 +14,6 @@ mod stimuli;
 mod studies;
 mod versions;
 
-pub(crate) use auth::COOKIE;
 pub use document::openapi_json;
 
 use crate::api::{Problem, ProblemCode};

@@ -7,12 +7,13 @@ use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Known, Problem, ProblemCode, SessionState,
     SessionStatus, refusals,
 };
-use crate::app::{App, Begun};
+use crate::app::App;
 use crate::extract::{Object, Parameters, Query, Token};
-use crate::password::random_token;
+use crate::loaded::Begun;
 use crate::presenting::Whose;
 use crate::previews::Preview;
 use axum::extract::State;
+use kelir_house::random_token;
 use kelir_store::{PlannedTrial, sha256_hex};
 use kelir_study::{StudyDefinition, TrialPlan};
 use serde::Deserialize;

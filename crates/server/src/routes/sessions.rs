@@ -2,20 +2,21 @@
 
 use super::studies::{StudyPath, told};
 use super::{Answered, Fresh, links, previews};
-use crate::address::ClientAddress;
 use crate::api;
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Held, Known, NewSession, Problem, ProblemCode,
     SessionState, SessionStatus, Trial, refusals,
 };
-use crate::app::{App, idle};
-use crate::extract::{Body, Claim, Object, Parameters, Participant, Query, SignedIn};
-use crate::links::{Visit, is_of_link};
-use crate::making::StimulusMap;
-use crate::password::{random_code, random_token};
+use crate::app::App;
+use crate::extract::{Body, Claim, ClientAddress, Object, Parameters, Participant, Query, SignedIn};
+use crate::loaded::idle;
+use crate::password::random_code;
 use crate::presenting::Whose;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
+use kelir_house::links::{Visit, is_of_link};
+use kelir_house::making::StimulusMap;
+use kelir_house::random_token;
 use kelir_store::{
     Appended, Begun, Completed, NextTrials, PlannedSession, PlannedTrial, Progress, SentAnswer, Session,
     SessionKind, SizedStimuli, StimulusHashes, StoreError, Taken, sha256_hex,
@@ -79,7 +80,7 @@ pub(crate) async fn create_session(
     let pairs: Vec<(String, String)> = params.clone().into_iter().collect();
     let visit = links::visit(&app, &loaded.study.id, &pairs, researcher.is_some())?;
     if visit == Visit::Preview {
-        let begun = crate::app::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
+        let begun = crate::loaded::Begun { study: loaded.study.clone(), stimuli: served.stimuli.clone() };
         let language = new.display.as_ref().and_then(|display| display.get("language")?.as_str());
         return Ok((StatusCode::CREATED, Fresh(previews::begin(&app, begun, language).await?)));
     }
@@ -207,7 +208,7 @@ pub(crate) async fn get_session(
         app.store.touch_session(&session.session_id).await?;
         return Ok(Fresh(state_of(&app, &session).await?));
     }
-    let crate::app::Begun { study, stimuli } = app.begun(&session).await?;
+    let crate::loaded::Begun { study, stimuli } = app.begun(&session).await?;
     let idle = idle(&study);
     let plan = move |slot| plan_of(&study, &stimuli, slot);
     let session = app.store.resume(&session, idle, plan).await?;
@@ -223,7 +224,7 @@ pub(crate) async fn give_consent(
     Participant(session): Participant,
     State(app): State<Arc<App>>,
 ) -> Answered<SessionState> {
-    let crate::app::Begun { study, stimuli } = app.begun(&session).await?;
+    let crate::loaded::Begun { study, stimuli } = app.begun(&session).await?;
     // The text that was read, in the language in which it was.
     let text = study.texts_in(language(&study, &session)).consent.join("\n\n");
     let idle = idle(&study);
@@ -369,7 +370,7 @@ pub(crate) async fn post_answer(
 
 /// What follows in a session from what it was shown and answered.
 pub(super) fn next_of(
-    begun: &crate::app::Begun,
+    begun: &crate::loaded::Begun,
     slot: u32,
     progress: &Progress,
 ) -> Result<NextTrials, Box<Problem>> {

@@ -4,9 +4,11 @@ use super::{Answered, Fresh};
 use crate::api::{
     Display, ListQuery, Progress, Study, StudyList, StudyStatus, StudySummary, VersionList, refusals,
 };
-use crate::app::{App, BrokenStudy, LoadedStudy, Stimuli, idle};
+use crate::app::App;
 use crate::extract::{Parameters, Query, Researcher};
+use crate::loaded::{BrokenStudy, LoadedStudy, Stimuli, idle};
 use axum::extract::State;
+use kelir_house::versions::{counted, versions};
 use kelir_report::Participants;
 use kelir_store::StoreError;
 use kelir_study::StudyDefinition;
@@ -117,7 +119,7 @@ async fn summary(app: &App, loaded: &LoadedStudy) -> Result<StudySummary, StoreE
             Some(version) => app.store.version_counts(&study.id, idle(&loaded.study)).await?.remove(version),
             None => None,
         }
-        .map(|gathered| crate::results::counted(gathered.participants))
+        .map(|gathered| counted(gathered.participants))
         .unwrap_or_default(),
         version,
         file_hash: loaded.file_hash.clone(),
@@ -144,7 +146,7 @@ pub(crate) async fn list_versions(
     Query(query): Query<ListQuery>,
 ) -> Answered<VersionList> {
     let current = app.current(&study);
-    let versions = crate::results::versions(&app.store, &study, current.as_deref()).await?;
+    let versions = versions(&app.store, &study, current.as_deref()).await?;
     if versions.is_empty() {
         app.study(&study)?;
     }

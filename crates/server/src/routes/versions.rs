@@ -4,18 +4,17 @@ use super::{Answered, Fresh};
 use crate::api::{Codebook, Pooling, Problem, refusals, version_ref};
 use crate::app::App;
 use crate::audit::AUDIT;
-use crate::events::events_table;
-use crate::export::{codebook_csv, responses_csv, spreadsheet};
 use crate::extract::{Parameters, Query, Researcher};
-use crate::participants::participants_table;
-use crate::results::{StudyResults, pairs_csv, report_of, results_of};
-use crate::selection::Selection;
-use crate::table::codebook_of;
 use axum::body::Body;
 use axum::extract::FromRequestParts;
 use axum::http::header;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
+use kelir_house::results::{StudyResults, report_of, results_of};
+use kelir_house::selection::Selection;
+use kelir_house::{
+    codebook_csv, codebook_of, events_table, pairs_csv, participants_table, responses_csv, spreadsheet,
+};
 use kelir_report::{Document, Figures, StudyReport, html, markdown};
 use kelir_store::background;
 use kelir_study::columns::{codebook, events_codebook, participants_codebook};

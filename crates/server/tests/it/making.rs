@@ -1,6 +1,7 @@
 use crate::client::{Client, config};
 use crate::placeholder::Placeholder;
-use kelir_server::{Library, Made, Maker, RenderMaker, Server, Task};
+use kelir_house::{Library, Made, Maker, RenderMaker, Task};
+use kelir_server::Server;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,6 +1,6 @@
 //! Stimuli that need no renderer: small drawings told apart by scene and condition.
 
-use kelir_server::{Library, Made, Maker, Task};
+use kelir_house::{Library, Made, Maker, Task};
 use kelir_study::Kind;
 use serde_json::json;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

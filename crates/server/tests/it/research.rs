@@ -3,7 +3,9 @@ use crate::placeholder::Placeholder;
 use axum::body::Body;
 use axum::extract::ConnectInfo;
 use axum::http::{Request, StatusCode, header};
-use kelir_server::{Server, TrustedProxies, VersionRef, With};
+use kelir_house::results::report_of_study;
+use kelir_house::selection::{VersionRef, With};
+use kelir_server::{Server, TrustedProxies};
 use serde_json::{Value, json};
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -112,7 +114,7 @@ async fn results_are_what_the_answers_add_up_to() {
 
     let offline = async |folder: &std::path::Path, study: &str| {
         let (version, with) = (VersionRef::Current, With::default());
-        kelir_server::results::report_of_study(folder, study, &version, &with).await
+        report_of_study(folder, study, &version, &with).await
     };
     let report = offline(client.folder.path(), "shadow-puppets").await.unwrap();
     let summaries: Vec<_> =
@@ -291,10 +293,7 @@ async fn the_report_and_the_pairs_agree_with_the_results() {
     }
     assert_eq!((&report["chain"]["rows"], &report["chain"]["faults"]), (&json!(12), &json!([])));
     let (version, with) = (VersionRef::Current, With::default());
-    let offline =
-        kelir_server::results::report_of_study(client.folder.path(), "shadow-puppets", &version, &with)
-            .await
-            .unwrap();
+    let offline = report_of_study(client.folder.path(), "shadow-puppets", &version, &with).await.unwrap();
     assert!(serde_json::to_value(&offline).unwrap() == report, "the command says the same");
 
     // The same as files: researchers only, to be kept, and whole in themselves.

@@ -208,7 +208,7 @@ async fn pictures_of_ones_own_are_asked_for_at_each_size() {
         with(&format!("a = {pair}, b = {swapped}")),
     )
     .unwrap();
-    let library = kelir_server::Library::new(client.folder.path());
+    let library = kelir_house::Library::new(client.folder.path());
     let refused = library.study("studies/shadow-puppets.toml").unwrap_err().to_string();
     assert!(refused.contains("conditions.mc.files.b[0]") && refused.contains("128 × 72"), "{refused}");
     assert!(refused.contains("conditions.mc.files.b[1]") && !refused.contains("files.a"), "{refused}");

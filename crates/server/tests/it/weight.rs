@@ -1,7 +1,8 @@
 //! What `kelir study check` says of a study's weight is what its participants download.
 
 use crate::client::{STUDY, config, folder};
-use kelir_server::{Library, RenderMaker, Server};
+use kelir_house::{Library, RenderMaker};
+use kelir_server::Server;
 use kelir_study::trials::Role;
 use serde_json::json;
 use std::collections::BTreeMap;

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
+use kelir_house::shipped;
 use kelir_plot::{Axis, Figure, Point, Rule, Series, svg};
 use kelir_render::accuracy::{CaseReport, Measured, Options, Outcome, Report, all, measure};
 use kelir_render::{Backend, Pixel, View, VisibilityModel, file};
-use kelir_server::shipped;
 
 use crate::commands::drawing::{PixelName, parse_backend, parse_size, render_error};
 use crate::output::{Figures, table};

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use kelir_house::selection::{Selection, VersionRef, With};
+use kelir_house::{Library, Made, Maker, Task, results};
 use kelir_render::encode;
-use kelir_server::{
-    Library, Made, Maker, Selection, Server, ServerConfig, Task, TrustedProxies, VersionRef, With, results,
-};
+use kelir_server::{Server, ServerConfig, TrustedProxies};
 use kelir_stats::pairwise::Model;
 use kelir_stats::random::Random;
 use kelir_store::{

@@ -1,12 +1,9 @@
 //! Where study files, scenes and pictures are read from: the data folder first, then what is built in.
 
-use crate::check;
-use crate::error::StudyFileError;
 use crate::remembered::{Known, Remembered, SceneFacts};
-use crate::weight::{self, Weight};
 use kelir_scene::{Assets, Scene};
 use kelir_store::sha256_hex;
-use kelir_study::{Problem, Problems, StudyDefinition};
+use kelir_study::Problem;
 use rust_embed::RustEmbed;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::{self, ErrorKind};
@@ -35,7 +32,7 @@ impl Library {
     }
 
     /// The library of a server's data folder, which keeps in it what it learns of scenes.
-    pub(crate) fn remembering(folder: &Path) -> Library {
+    pub fn remembering(folder: &Path) -> Library {
         let remembered = Some(Arc::new(Mutex::new(Remembered::load(folder))));
         Library { remembered, ..Library::new(folder) }
     }
@@ -85,53 +82,6 @@ impl Library {
                 path.ends_with(".toml") && path.matches('/').count() == 1 && path.starts_with("studies/")
             })
             .collect()
-    }
-
-    /// Reads and checks the study file at `path`, with its scenes, its conditions' settings and its pictures.
-    ///
-    /// # Errors
-    /// It cannot be read, or everything that is wrong with it.
-    pub fn study(&self, path: &str) -> Result<StudyDefinition, StudyFileError> {
-        self.checked(path, false)
-    }
-
-    /// As [`Library::study`], and tries each picture in a small size: what this calls good can be made.
-    ///
-    /// # Errors
-    /// It cannot be read, or everything that is wrong with it.
-    pub fn rehearsed(&self, path: &str) -> Result<StudyDefinition, StudyFileError> {
-        self.checked(path, true)
-    }
-
-    /// What may be a mistake in a study that is good: in its file, and in the pictures that it names.
-    pub fn warnings(&self, path: &str, study: &StudyDefinition) -> Vec<Problem> {
-        [study.warnings(path), check::doubts_around(self, path, study)].concat()
-    }
-
-    /// What a participant downloads of each block of a study that is good, at each of its sizes.
-    ///
-    /// # Errors
-    /// Why something cannot be drawn or packed.
-    pub fn weights(&self, path: &str, study: &StudyDefinition) -> Result<Vec<Weight>, String> {
-        weight::weights(self, path, study)
-    }
-
-    fn checked(&self, path: &str, thorough: bool) -> Result<StudyDefinition, StudyFileError> {
-        let unreadable = |source| StudyFileError::Unreadable { path: PathBuf::from(path), source };
-        let bytes = self.read(path).map_err(unreadable)?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| unreadable(io::Error::new(ErrorKind::InvalidData, "the file is no UTF-8 text")))?;
-        let (study, mut problems) = StudyDefinition::parse_as_far(path, &text);
-        if let Some(study) = &study {
-            problems.extend(check::problems_around(self, path, study));
-            if thorough && study.size != [0, 0] {
-                problems.extend(check::problems_drawing(self, path, study));
-            }
-        }
-        match study {
-            Some(study) if problems.is_empty() => Ok(study),
-            _ => Err(Problems::new(problems).into()),
-        }
     }
 
     /// What there is to know of the scene at a path of the library, as it was when it was first read.

@@ -1,91 +1,13 @@
 //! Making a study's stimuli: each once, stored by what it is with where it came from.
 
-use crate::drawing;
 use crate::library::{Library, beside};
-use crate::picture;
+use crate::task::{Made, Maker, Task, tasks};
+use crate::{drawing, picture};
 use kelir_store::{ANIMATION, Render, StimulusInfo, Store, StoreError, StudyStimulus, sha256_hex};
-use kelir_study::{Block, Condition, Item, Pictures, StudyDefinition};
+use kelir_study::{Condition, Pictures, StudyDefinition};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// One stimulus to make: a pair of a study under one of its conditions at one of its sizes.
-#[derive(Clone, Copy, Debug)]
-pub struct Task<'a> {
-    /// The study.
-    pub study: &'a StudyDefinition,
-    /// The pair's block.
-    pub block: &'a Block,
-    /// The pair.
-    pub pair: &'a Item,
-    /// The condition's name.
-    pub name: &'a str,
-    /// The condition.
-    pub condition: &'a Condition,
-    /// Place of its size among the study's.
-    pub rank: usize,
-    /// The size [width, height] in pixels.
-    pub size: [u32; 2],
-}
-
-impl Task<'_> {
-    /// How many times as wide it is as the study's smallest size.
-    pub fn magnification(&self) -> f64 {
-        f64::from(self.size[0]) / f64::from(self.study.size[0])
-    }
-
-    /// Pair and condition in words, and the size where the study has several.
-    fn in_words(&self) -> String {
-        let [width, height] = self.size;
-        match self.study.sizes() {
-            [_] => format!("{} ({})", self.pair.id, self.name),
-            _ => format!("{} ({}, {width} × {height})", self.pair.id, self.name),
-        }
-    }
-
-    /// The study's file in the library.
-    pub fn study_file(&self) -> String {
-        format!("studies/{}.toml", self.study.id)
-    }
-
-    /// The pair's scene in the library.
-    pub fn scene_file(&self) -> Option<String> {
-        self.pair.scene.as_ref().map(|scene| beside(&self.study_file(), scene))
-    }
-}
-
-/// A finished stimulus.
-#[derive(Clone, Debug)]
-pub struct Made {
-    /// Media type of `bytes`.
-    pub media_type: String,
-    /// What is shown, or the manifest of an animation.
-    pub bytes: Vec<u8>,
-    /// Media type and bytes of what the manifest names by hash.
-    pub attachments: Vec<(String, Vec<u8>)>,
-    /// How it was made, with its measured error.
-    pub provenance: Value,
-}
-
-/// Draws stimuli. The server's door to the renderer, so that tests can stand something else in it.
-pub trait Maker: Send + Sync + 'static {
-    /// A text that is equal for two tasks exactly when they would make the same stimulus.
-    ///
-    /// # Errors
-    /// What is wrong with the task's scene or condition.
-    fn identity(&self, task: &Task<'_>, library: &Library) -> Result<String, String>;
-
-    /// Makes the stimulus. `progress` takes the part that is done, 0..=1, and what is being done.
-    ///
-    /// # Errors
-    /// Why it cannot be made.
-    fn make(
-        &self,
-        task: &Task<'_>,
-        library: &Library,
-        progress: &mut (dyn FnMut(f64, &str) + Send),
-    ) -> Result<Made, String>;
-}
 
 /// How far a study's stimuli are.
 #[derive(Clone, Debug)]
@@ -106,14 +28,14 @@ pub struct Making {
 
 /// A study's stimuli, by item and condition, each by rising size.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct StimulusMap(BTreeMap<(String, String), Vec<StudyStimulus>>);
+pub struct StimulusMap(BTreeMap<(String, String), Vec<StudyStimulus>>);
 
 impl StimulusMap {
     /// What an item shows under a condition, by rising size; never nothing.
     ///
     /// # Errors
     /// [`MakingError::Missing`] names what is not there.
-    pub(crate) fn of(&self, item: &str, condition: &str) -> Result<&[StudyStimulus], MakingError> {
+    pub fn of(&self, item: &str, condition: &str) -> Result<&[StudyStimulus], MakingError> {
         let missing = || MakingError::Missing { item: item.to_owned(), condition: condition.to_owned() };
         self.0.get(&(item.to_owned(), condition.to_owned())).map(Vec::as_slice).ok_or_else(missing)
     }
@@ -122,13 +44,13 @@ impl StimulusMap {
     ///
     /// # Errors
     /// [`MakingError::Missing`] names what is not there.
-    pub(crate) fn at(&self, item: &str, condition: &str, rank: usize) -> Result<&StudyStimulus, MakingError> {
+    pub fn at(&self, item: &str, condition: &str, rank: usize) -> Result<&StudyStimulus, MakingError> {
         let missing = || MakingError::Missing { item: item.to_owned(), condition: condition.to_owned() };
         self.of(item, condition)?.get(rank).ok_or_else(missing)
     }
 
     /// Everything that is shown, by item, condition and size.
-    pub(crate) fn all(&self) -> Vec<StudyStimulus> {
+    pub fn all(&self) -> Vec<StudyStimulus> {
         self.0.values().flatten().cloned().collect()
     }
 }
@@ -144,36 +66,36 @@ impl FromIterator<StudyStimulus> for StimulusMap {
     }
 }
 
-/// Every stimulus of a study, in the order of its file, each by rising size.
-pub(crate) fn tasks(study: &StudyDefinition) -> Vec<Task<'_>> {
-    let mut tasks = Vec::new();
-    for block in &study.blocks {
-        for pair in &block.items {
-            for name in &block.conditions {
-                let Some(condition) = study.conditions.get(name) else { continue };
-                for (rank, size) in study.sizes().iter().copied().enumerate() {
-                    tasks.push(Task { study, block, pair, name, condition, rank, size });
-                }
-            }
-        }
-    }
-    tasks
-}
-
 /// Why a study's stimuli could not be made.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum MakingError {
+pub enum MakingError {
+    /// One of them cannot.
     #[error("{stimulus}: {reason}")]
-    Stimulus { stimulus: String, reason: String },
+    Stimulus {
+        /// Pair and condition in words.
+        stimulus: String,
+        /// Why.
+        reason: String,
+    },
+    /// A study shows what was never made.
     #[error("item {item} has no stimulus of condition {condition}")]
-    Missing { item: String, condition: String },
+    Missing {
+        /// Id of the item.
+        item: String,
+        /// The condition's name.
+        condition: String,
+    },
+    /// The store cannot be read or written.
     #[error(transparent)]
     Store(#[from] StoreError),
 }
 
 /// Makes what is missing of a study's stimuli; what was made before, in any run, is taken as it is. Each is stored as soon as
 /// it is done, so an interrupted run goes on where it stopped.
-pub(crate) async fn make(
+///
+/// # Errors
+/// Why one of them cannot be made, or the store not be used.
+pub async fn make(
     study: &Arc<StudyDefinition>,
     store: &Store,
     library: &Library,
@@ -238,21 +160,32 @@ pub(crate) async fn make(
 /// The stimulus of a finished job and how it was made, if it and all it names are stored undamaged.
 async fn intact(store: &Store, job_key: &str) -> Result<Option<(StimulusInfo, Value)>, StoreError> {
     let Some(render) = store.render(job_key).await? else { return Ok(None) };
-    let mut wanted = vec![render.sha256.clone()];
-    while let Some(sha256) = wanted.pop() {
-        match store.stimulus(&sha256).await {
-            Ok(Some((media_type, bytes))) if media_type == ANIMATION => wanted.extend(frames(&bytes)),
-            Ok(Some(_)) => {}
-            Ok(None) | Err(StoreError::Damaged { .. }) => return Ok(None),
-            Err(error) => return Err(error),
-        }
+    if !is_whole(store, &render.sha256).await? {
+        return Ok(None);
     }
     let info = store.stimulus_info(&render.sha256).await?;
     Ok(info.map(|info| (info, render.provenance)))
 }
 
+/// Whether a stimulus and all that it names are stored as they were.
+///
+/// # Errors
+/// The store cannot be read.
+pub async fn is_whole(store: &Store, sha256: &str) -> Result<bool, StoreError> {
+    let mut wanted = vec![sha256.to_owned()];
+    while let Some(sha256) = wanted.pop() {
+        match store.stimulus(&sha256).await {
+            Ok(Some((media_type, bytes))) if media_type == ANIMATION => wanted.extend(frames(&bytes)),
+            Ok(Some(_)) => {}
+            Ok(None) | Err(StoreError::Damaged { .. }) => return Ok(false),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(true)
+}
+
 /// The frames that a manifest names, each once.
-pub(crate) fn frames(manifest: &[u8]) -> Vec<String> {
+fn frames(manifest: &[u8]) -> Vec<String> {
     let manifest: Value = serde_json::from_slice(manifest).unwrap_or_default();
     let mut frames: Vec<String> = manifest["frames"]
         .as_array()

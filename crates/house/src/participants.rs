@@ -1,9 +1,9 @@
 //! Sessions as a table: one row each, with whether its answers are judged, and why not.
 
-use crate::export::designs;
 use crate::results::read;
 use crate::selection::Selection;
 use crate::table::Table;
+use crate::versions::designs;
 use kelir_store::{AnswerRow, Session, Store, StoreError};
 use kelir_study::columns::{ParticipantColumns, SessionStatus, participants_codebook};
 use kelir_study::visits::{Flag, Judged};

@@ -1,5 +1,6 @@
 //! Which versions of a study an analysis is of: one that gives the design, and others whose answers are pooled with it by name.
 
+use crate::versions::stored;
 use kelir_report::{DifferentStimulus, PooledVersion};
 use kelir_store::{Store, StoreError, StudyStimulus, StudyVersion};
 use kelir_study::StudyDefinition;
@@ -152,10 +153,7 @@ impl Selection {
         version: &VersionRef,
         with: &With,
     ) -> Result<Selection, SelectionError> {
-        let mut known = store.study_versions(study_id).await?;
-        if let Some(at) = known.iter().position(|version| Some(version.version.as_str()) == current) {
-            known[..=at].rotate_right(1);
-        }
+        let known = stored(store, study_id, current).await?;
         let named = version.among(&known)?;
         let mut versions = vec![named.version.clone()];
         let others: Vec<String> = match with {

@@ -1,14 +1,70 @@
 //! Whether a study can be served: all that it names is opened, and each picture is tried in a small size.
 
-use crate::error::StudyFileError;
 use crate::library::{Library, beside};
-use crate::making::{Task, tasks};
+use crate::task::{Task, tasks};
 use crate::{picture, render};
 use kelir_render::RenderError;
-use kelir_study::{Block, Condition, Item, Kind, Problem, StudyDefinition};
+use kelir_study::{Block, Condition, Item, Kind, Problem, Problems, StudyDefinition};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, ErrorKind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Why a study file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyFileError {
+    /// Everything that is wrong with it, its scenes, conditions and pictures included.
+    #[error("{0}")]
+    Invalid(#[from] Problems),
+    /// It cannot be read.
+    #[error("{path}: {source}")]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+impl Library {
+    /// Reads and checks the study file at `path`, with its scenes, its conditions' settings and its pictures.
+    ///
+    /// # Errors
+    /// It cannot be read, or everything that is wrong with it.
+    pub fn study(&self, path: &str) -> Result<StudyDefinition, StudyFileError> {
+        self.checked(path, false)
+    }
+
+    /// As [`Library::study`], and tries each picture in a small size: what this calls good can be made.
+    ///
+    /// # Errors
+    /// It cannot be read, or everything that is wrong with it.
+    pub fn rehearsed(&self, path: &str) -> Result<StudyDefinition, StudyFileError> {
+        self.checked(path, true)
+    }
+
+    /// What may be a mistake in a study that is good: in its file, and in the pictures that it names.
+    pub fn warnings(&self, path: &str, study: &StudyDefinition) -> Vec<Problem> {
+        [study.warnings(path), doubts_around(self, path, study)].concat()
+    }
+
+    fn checked(&self, path: &str, thorough: bool) -> Result<StudyDefinition, StudyFileError> {
+        let unreadable = |source| StudyFileError::Unreadable { path: PathBuf::from(path), source };
+        let bytes = self.read(path).map_err(unreadable)?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| unreadable(io::Error::new(ErrorKind::InvalidData, "the file is no UTF-8 text")))?;
+        let (study, mut problems) = StudyDefinition::parse_as_far(path, &text);
+        if let Some(study) = &study {
+            problems.extend(problems_around(self, path, study));
+            if thorough && study.size != [0, 0] {
+                problems.extend(problems_drawing(self, path, study));
+            }
+        }
+        match study {
+            Some(study) if problems.is_empty() => Ok(study),
+            _ => Err(Problems::new(problems).into()),
+        }
+    }
+}
 
 /// The library of any study file and its path there, for [`Library::rehearsed`]. What it names is looked for below the parent of its folder when that
 /// is called `studies`, else below the folder itself, and then among the built-in files.
@@ -47,7 +103,7 @@ impl Found<'_> {
 }
 
 /// What is wrong with what a study names: conditions' settings, picture files, scenes.
-pub(crate) fn problems_around(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
+fn problems_around(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
     let mut found = Found { file, problems: Vec::new() };
     for (name, condition) in &study.conditions {
         let field = format!("conditions.{name}");
@@ -102,7 +158,7 @@ pub(crate) fn problems_around(library: &Library, file: &str, study: &StudyDefini
 }
 
 /// What picture files ask that nobody will do: participants see them otherwise than their maker may.
-pub(crate) fn doubts_around(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
+fn doubts_around(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
     let mut found = Found { file, problems: Vec::new() };
     for (name, condition) in &study.conditions {
         let Condition::Files { files } = condition else { continue };
@@ -119,7 +175,7 @@ pub(crate) fn doubts_around(library: &Library, file: &str, study: &StudyDefiniti
 }
 
 /// What keeps pictures from being drawn, found by drawing each in a small size. What [`problems_around`] finds is not said again.
-pub(crate) fn problems_drawing(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
+fn problems_drawing(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
     let mut found = Found { file, problems: Vec::new() };
     let fields: BTreeMap<&str, String> =
         items(study).map(|(_, item, field)| (item.id.as_str(), field)).collect();

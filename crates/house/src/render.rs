@@ -1,7 +1,7 @@
 //! The narrow door to the renderer: a scene, a technique and an output in, a stimulus out.
 
 use crate::library::Library;
-use crate::making::{Made, Maker, Task};
+use crate::task::{Made, Maker, Task};
 use kelir_render::camera::Camera;
 use kelir_render::job::{Drawing, Job, Output, run};
 use kelir_render::{Backend, Pixel, RenderError, Technique, View};

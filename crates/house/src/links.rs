@@ -1,5 +1,6 @@
 //! Signed links to a study: whoever has one may try it, as a preview or as a pilot, until it ends. A link that is not signed does nothing.
 
+use crate::secret::random_token;
 use hmac::{Hmac, KeyInit, Mac};
 use kelir_store::{private_file, sha256_hex};
 use kelir_study::schema::worded;
@@ -49,7 +50,7 @@ impl Links {
             Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
             Err(_) => {}
         }
-        let key = crate::password::random_token();
+        let key = random_token();
         let made = private_file().create_new(true).open(&path);
         match made.and_then(|mut file| writeln!(file, "{key}").and_then(|()| file.sync_all())) {
             Ok(()) => Ok(Links { key }),
@@ -133,7 +134,7 @@ impl Links {
 }
 
 /// Whether a parameter is the link's own, and none of the person who follows it.
-pub(crate) fn is_of_link(name: &str) -> bool {
+pub fn is_of_link(name: &str) -> bool {
     [Visit::Pilot.as_str(), Visit::Preview.as_str(), EXPIRES, KEY_ID, SIGNATURE].contains(&name)
 }
 

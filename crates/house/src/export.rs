@@ -4,6 +4,7 @@ use crate::events::events_table;
 use crate::participants::{participants_table, status, verdicts};
 use crate::selection::Selection;
 use crate::table::{Table, codebook_of};
+use crate::versions::designs;
 use crate::workbook::workbook;
 use kelir_store::{PlannedTrial, Store, StoreError, sha256_hex};
 use kelir_study::columns::{Answered, Rows, SessionColumns, codebook};
@@ -115,12 +116,6 @@ pub enum ExportError {
     /// The file cannot be put together.
     #[error("the spreadsheet cannot be written: {0}")]
     Workbook(String),
-}
-
-/// Hash of the design of each version.
-pub(crate) async fn designs(store: &Store, study_id: &str) -> Result<HashMap<String, String>, StoreError> {
-    let versions = store.study_versions(study_id).await?;
-    Ok(versions.into_iter().map(|version| (version.version, version.design_hash)).collect())
 }
 
 /// What each column of the table of responses is.

@@ -1,24 +1,21 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
-use crate::api::StudyVersion;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
 use crate::weight::{Download, downloads};
 use kelir_report::{
     Chain, DifferentStimulus, Fault, Participants, PooledVersion, ShownAt, Standing, Stimulus, StudyReport,
-    Terminator, csv_table,
 };
 use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
 use kelir_store::{ShownSize, Store, StoreError, StoredAnswers, StudyStimulus};
 use kelir_study::analysis::{BlockSummary, conditions_scale, summarise};
-use kelir_study::answers::{Answers, blocks, compares};
+use kelir_study::answers::Answers;
 use kelir_study::report::Report;
 use kelir_study::visits::{Judged, LeftOut, SessionKind, Visit};
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 use utoipa::ToSchema;
 
 pub use kelir_report::Excluded;
@@ -79,7 +76,10 @@ pub(crate) async fn read(store: &Store, selection: &Selection) -> Result<Arc<Ans
 }
 
 /// The same from answers that have been read.
-pub(crate) async fn results_of(
+///
+/// # Errors
+/// The store cannot be read.
+pub async fn results_of(
     store: &Store,
     selection: &Selection,
     answers: &Answers,
@@ -124,11 +124,6 @@ fn participants(visits: &[Visit]) -> Participants {
     })
 }
 
-/// The store's counts as the report has them.
-pub(crate) fn counted(people: kelir_store::Participants) -> Participants {
-    Participants { started: people.started, in_progress: people.in_progress, completed: people.completed }
-}
-
 fn standing(selection: &Selection, judged: &Judged<'_>) -> Standing {
     Standing::of(&selection.study, judged, &selection.include.0)
 }
@@ -148,7 +143,10 @@ pub async fn report(store: &Store, selection: &Selection) -> Result<StudyReport,
 }
 
 /// The same from answers that have been read.
-pub(crate) async fn report_of(
+///
+/// # Errors
+/// The store cannot be read.
+pub async fn report_of(
     store: &Store,
     selection: &Selection,
     answers: &Answers,
@@ -226,40 +224,6 @@ fn fault(kelir_store::Fault { chain, seq, what, note }: kelir_store::Fault) -> F
     Fault { chain, seq, what, note }
 }
 
-/// Choices as pwcmp reads them, one row a trial: `observer, session, scene, condition_A, condition_B, is_A_selected`, and
-/// `left_condition` (of trials one after the other: the first), since A and B are the block's conditions in file order and never mean sides.
-/// By participants in the order they began and items in file order, without the excluded, catch blocks and adaptive ones.
-///
-/// # Errors
-/// The store cannot be read.
-pub async fn pairs_csv(store: &Store, selection: &Selection) -> Result<String, StoreError> {
-    let study = &selection.study;
-    let answers = read(store, selection).await?;
-    let visits = selection.visits(store).await?;
-    let judged = Judged::of(study, &answers, &visits, &selection.include.0);
-    let sessions = store.sessions(&study.id, &selection.versions).await?;
-    let observers: HashMap<&str, &str> =
-        sessions.iter().map(|s| (s.session_id.as_str(), s.subject_id.as_str())).collect();
-    let header =
-        ["observer", "session", "scene", "condition_A", "condition_B", "is_A_selected", "left_condition"];
-    let mut rows = Vec::new();
-    for participant in &judged.judged {
-        let session = &*participant.session_id;
-        let observer = observers.get(session).copied().unwrap_or_default();
-        for (block, items) in blocks(study).filter(|(block, _)| compares(block)) {
-            let [a, b] = &block.conditions;
-            for given in participant.answers_to(&items) {
-                let item = &block.items[(given.item - items.start) as usize];
-                let chose = |target: bool| if target { block.target.as_str() } else { block.other() };
-                let selected = if chose(given.chose_target) == a { "1" } else { "0" };
-                let first = chose(given.chose_target == given.chose_first);
-                rows.push([observer, session, &item.id, a, b, selected, first]);
-            }
-        }
-    }
-    Ok(csv_table(Terminator::CRLF, header, rows))
-}
-
 /// Who is left out by the study's rules, and why.
 fn excluded(judged: &Judged<'_>) -> Vec<Excluded> {
     let excluded = judged.left_out.iter().filter_map(|(visit, why)| match why {
@@ -269,41 +233,6 @@ fn excluded(judged: &Judged<'_>) -> Vec<Excluded> {
         _ => None,
     });
     excluded.collect()
-}
-
-/// The versions of a study, the one that is served (`current`; absent: that was served last) first, with what each has gathered.
-///
-/// # Errors
-/// The store cannot be read.
-pub async fn versions(
-    store: &Store,
-    study_id: &str,
-    current: Option<&str>,
-) -> Result<Vec<StudyVersion>, StoreError> {
-    let mut known = store.study_versions(study_id).await?;
-    if let Some(at) = known.iter().position(|version| Some(version.version.as_str()) == current) {
-        known[..=at].rotate_right(1);
-    }
-    let Some(idle) = known.first().map(|first| 60 * u64::from(first.study.idle_minutes)) else {
-        return Ok(Vec::new());
-    };
-    let counts = store.version_counts(study_id, Duration::from_secs(idle)).await?;
-    let mut versions = Vec::with_capacity(known.len());
-    for (place, version) in known.into_iter().enumerate() {
-        let gathered = counts.get(&version.version).copied().unwrap_or_default();
-        versions.push(StudyVersion {
-            is_current: place == 0,
-            title: version.study.title,
-            participants: counted(gathered.participants),
-            answers: gathered.answers,
-            stimuli: store.version_stimuli(study_id, &version.version).await?.len(),
-            version: version.version,
-            design_hash: version.design_hash,
-            first_served_at: version.first_served_at,
-            last_served_at: version.last_served_at,
-        });
-    }
-    Ok(versions)
 }
 
 /// Why there are no results.

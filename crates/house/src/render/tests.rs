@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use super::*;
-use crate::making::tasks;
+use crate::task::tasks;
 use kelir_store::sha256_hex;
 use std::path::Path;
 

@@ -2,9 +2,8 @@
 //! a version as it is stored.
 
 use crate::library::{Library, beside};
-use crate::making::{Task, tasks};
-use crate::presenting::TAIL;
 use crate::render;
+use crate::task::{Task, tasks};
 use kelir_scene::Scene;
 use kelir_store::{PackedSize, Store, StoreError, packed_bytes, step_bytes};
 use kelir_study::{Condition, Kind, StudyDefinition};
@@ -12,6 +11,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
+/// Bytes that are a session's own at the end of each stimulus that it gets.
+pub const TAIL: usize = 32;
 /// A slow line, bits a second.
 pub const SLOW_BITS_PER_S: u64 = 1_600_000;
 /// Above so many bytes a study is heavy at a size: half a minute on a slow line. It is one bound for all sizes, as a larger screen has no faster line.
@@ -90,12 +91,18 @@ impl Weighed {
     }
 }
 
-/// What each block of a study weighs at each of its sizes, in the order of the file. What is drawn is drawn at the smallest size alone: at a larger
-/// one it is taken to weigh as much more as it has more pixels.
-///
-/// # Errors
-/// Why something cannot be drawn or packed.
-pub(crate) fn weights(library: &Library, file: &str, study: &StudyDefinition) -> Result<Vec<Weight>, String> {
+impl Library {
+    /// What a participant downloads of each block of a study that is good, at each of its sizes, in the order of the file. What is drawn is drawn at the
+    /// smallest size alone: at a larger one it is taken to weigh as much more as it has more pixels.
+    ///
+    /// # Errors
+    /// Why something cannot be drawn or packed.
+    pub fn weights(&self, path: &str, study: &StudyDefinition) -> Result<Vec<Weight>, String> {
+        weights(self, path, study)
+    }
+}
+
+fn weights(library: &Library, file: &str, study: &StudyDefinition) -> Result<Vec<Weight>, String> {
     let mut weights = Vec::new();
     for block in &study.blocks {
         let of_block = |size: &[u32; 2]| {
