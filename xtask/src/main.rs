@@ -37,7 +37,7 @@ enum Task {
     },
     /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests.
     Test,
-    /// Build all of kelir at its fastest, target/release/kelir: about four times the work of the first `serve`.
+    /// Build all of kelir at its fastest, target/release/kelir: about twice the work of the first `serve`.
     Release,
     /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
     Bench,

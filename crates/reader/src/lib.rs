@@ -14,6 +14,7 @@ mod source;
 #[cfg(test)]
 mod tests;
 mod words;
+mod written;
 
 pub use asked::{Asked, Key};
 pub use fields::Fields;

@@ -10,6 +10,7 @@ use crate::canonical::canonical;
 use crate::fields::Fields;
 use crate::source::Source;
 use crate::words::{did_you_mean, join, list, shorten};
+use crate::written;
 
 /// One value, where it is and how it was written.
 #[derive(Clone, Debug)]
@@ -43,6 +44,11 @@ impl<'a> Node<'a> {
     /// The value in one fixed form, for hashes: sorted keys, plain numbers, no comments or layout.
     pub fn canonical(&self) -> String {
         canonical(self.value)
+    }
+
+    /// The document as TOML in one layout, without comments: values as written, keys sorted; a value that is no table gives nothing.
+    pub fn to_toml(&self) -> String {
+        self.value.as_table().map(written::document).unwrap_or_default()
     }
 
     /// The value as a message shows it.

@@ -136,3 +136,44 @@ fn words_of_messages() {
     assert_eq!(shorten(&"x".repeat(90)), Some(format!("{}…", "x".repeat(80))));
     assert_eq!(shorten(" \n"), None);
 }
+
+#[test]
+fn a_document_is_written_back_with_the_values_it_was_read_with() {
+    let written = |text: &str| {
+        let reading = Reading::default();
+        let both = reading.source("f", text).read(|root| Some((root.to_toml(), root.canonical())));
+        reading.end(both).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
+    };
+    let text = r#"
+# a comment
+day = 1979-05-27
+big = 0x10
+tiny = 1e-320
+minus = -0.0
+none = []
+mixed = [1, [2, { a = 'b' }], "c\n\"d\" \u00e4"]
+"a.b" = """
+two
+lines"""
+inline = { b = 1, a.c = 2 }
+[outer]
+[outer.inner.deep]
+x = 1
+[[list]]
+[[list.items]]
+t = 1
+[[list.items.deeper]]
+u = 2
+[[list]]
+name = "it's"
+"#;
+    let (toml, canonical) = written(text);
+    assert_eq!(written(&toml), (toml.clone(), canonical.clone()), "{toml}");
+    assert!(toml.contains("tiny = 1e-320\n") && toml.contains("big = 0x10\n"), "as written: {toml}");
+    assert!(toml.contains("[[list.items]]\ndeeper = [{ u = 2 }]\nt = 1\n"), "{toml}");
+    // Negative control: each other value is another document.
+    for (from, to) in [("t = 1", "t = 2"), ("two", "too"), ("[]", "[0]")] {
+        assert!(text.contains(from), "{from}");
+        assert_ne!(written(&text.replacen(from, to, 1)).1, canonical, "{from} → {to}");
+    }
+}

@@ -17,7 +17,7 @@ fn main() {
     let path = args.next().unwrap_or_else(|| "stimuli/scenes/benchmark.toml".into());
     let count = args.next().map_or(100, |n| n.parse().expect("a number of frames"));
     let width = args.next().map_or(1920, |n| n.parse().expect("a width in pixels"));
-    let mut scene = Scene::from_path(std::path::Path::new(&path)).expect("a valid scene");
+    let scene = Scene::from_path(std::path::Path::new(&path)).expect("a valid scene");
     let screen = scene.still().screen;
     let height = (width as f64 * screen.height_m / screen.width_m).round() as usize;
     let view = View { size: [width, height], pixel: Pixel::Area, skip: true };
@@ -30,7 +30,7 @@ fn main() {
         _ => vec![Case::Slid, Case::Posed, Case::LampMoved, Case::NothingSkipped],
     };
     let backend = args.next().map_or(Backend::Cpu, |b| b.parse().expect("cpu or gpu"));
-    let report = frames(&mut scene, &technique, backend, &view, count, &cases).expect("drawn");
+    let report = frames(&scene, &technique, backend, &view, count, &cases).expect("drawn");
     println!("{}x{} {}", report.size[0], report.size[1], report.adapter);
     for case in report.cases {
         println!(

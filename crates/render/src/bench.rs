@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use kelir_scene::{Scene, Theatre};
+use kelir_scene::{Masks, Scene, Theatre};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -82,7 +82,7 @@ fn median(values: &mut [f64]) -> f64 {
 /// Draws `frames` display frames of each case without writing a file. [`Case::Posed`] needs a timeline and is left out of scenes without
 /// one. The first frames of a case are not timed. Errors: as drawing.
 pub fn frames(
-    scene: &mut Scene,
+    scene: &Scene,
     technique: &Technique,
     backend: Backend,
     view: &View,
@@ -91,7 +91,7 @@ pub fn frames(
 ) -> Result<FramesReport, RenderError> {
     let mut drawing = renderer(technique, backend)?;
     let white = Rule::Still.white(scene, view, None);
-    let still = scene.still();
+    let (still, mut masks) = (scene.still(), Masks::default());
     let mut report = FramesReport {
         size: view.size,
         frames,
@@ -104,8 +104,9 @@ pub fn frames(
             continue;
         }
         let view = View { skip: *case != Case::NothingSkipped && view.skip, ..*view };
-        let timed =
-            timed(drawing.as_mut(), &view, white, frames, |k| staged(scene, &still, *case, k, frames))?;
+        let timed = timed(drawing.as_mut(), &view, white, frames, |k| {
+            staged(scene, &mut masks, &still, *case, k, frames)
+        })?;
         report.cases.push(CaseReport {
             case: *case,
             fps: 1e3 * timed.times.len() as f64 / timed.times.iter().sum::<f64>(),
@@ -220,13 +221,13 @@ pub fn fill(out: &mut [u32], value: u32) {
     out.par_chunks_mut(part).for_each(|part| part.fill(value));
 }
 
-fn staged(scene: &mut Scene, still: &Theatre, case: Case, k: usize, frames: usize) -> Theatre {
+fn staged(scene: &Scene, masks: &mut Masks, still: &Theatre, case: Case, k: usize, frames: usize) -> Theatre {
     let phase = k as f64 / frames.max(1) as f64;
     match case {
         Case::Posed => {
             let seconds = scene.timeline().map_or(1.0, |t| t.seconds);
             // Times that the timeline's own frames don't hit, so that no mask is remembered.
-            scene.theatre_at(seconds * ((k as f64 + 0.37) / (frames + 3) as f64))
+            scene.theatre_at(seconds * ((k as f64 + 0.37) / (frames + 3) as f64), masks)
         }
         Case::LampMoved => {
             let mut theatre = still.clone();

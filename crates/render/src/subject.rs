@@ -1,6 +1,6 @@
 //! What a job asks of what it draws: little enough that a stage of meshes or a photographed plate could answer as a theatre does.
 
-use kelir_scene::{Scene, Theatre, Timeline};
+use kelir_scene::{Masks, Scene, Theatre, Timeline};
 
 use crate::albedo::{self, PixelAlbedo};
 use crate::{Backend, RenderError, Renderer, Technique, View, exposure, irradiance, penumbra, techniques};
@@ -31,6 +31,9 @@ pub trait Staged {
     /// What it shows.
     type Subject: Subject;
 
+    /// What a drawing keeps of it from instant to instant.
+    type Kept: Default;
+
     /// SHA-256 of all that its images depend on, hexadecimal.
     fn sha256(&self) -> &str;
 
@@ -41,7 +44,7 @@ pub trait Staged {
     fn still(&self) -> Self::Subject;
 
     /// The scene at an instant of its timeline, seconds.
-    fn at(&mut self, time_s: f64) -> Self::Subject;
+    fn at(&self, time_s: f64, kept: &mut Self::Kept) -> Self::Subject;
 
     /// All of it that white depends on, at an instant or as written; what only casts shadows need not be there.
     fn lit(&self, time_s: Option<f64>) -> Self::Subject;
@@ -81,6 +84,7 @@ impl Subject for Theatre {
 
 impl Staged for Scene {
     type Subject = Theatre;
+    type Kept = Masks;
 
     fn sha256(&self) -> &str {
         self.sha256()
@@ -94,8 +98,8 @@ impl Staged for Scene {
         self.still()
     }
 
-    fn at(&mut self, time_s: f64) -> Theatre {
-        self.theatre_at(time_s)
+    fn at(&self, time_s: f64, masks: &mut Masks) -> Theatre {
+        self.theatre_at(time_s, masks)
     }
 
     fn lit(&self, time_s: Option<f64>) -> Theatre {

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use kelir_scene::{Mask, Scene, Texels};
+use kelir_scene::{Mask, Masks, Scene, Texels};
 
 /// Frames per measurement: more than a puppet remembers, so that every one is drawn.
 const FRAMES: usize = 241;
@@ -32,15 +32,15 @@ fn main() {
 }
 
 /// Prints the least, the median and the 95th percentile of `theatre_at`, and the time to copy as many bytes.
-fn measure(name: &str, mut scene: Scene) {
+fn measure(name: &str, scene: Scene) {
     let Some(timeline) = scene.timeline().cloned() else { return println!("{name}: has no timeline") };
-    let mut times = Vec::new();
+    let (mut times, mut masks) = (Vec::new(), Masks::default());
     let mut texels = 0;
     let mut copies = Vec::new();
     for frame in 0..FRAMES {
         let at = timeline.seconds * frame as f64 / FRAMES as f64;
         let start = Instant::now();
-        let theatre = black_box(scene.theatre_at(at));
+        let theatre = black_box(scene.theatre_at(at, &mut masks));
         times.push(start.elapsed());
         let mask = &theatre.planes[0].mask;
         texels = mask.width * mask.height;

@@ -12,19 +12,21 @@ use crate::assets::{Assets, DirAssets, read_file, root_of};
 use crate::fields;
 use crate::limits;
 use crate::load::Loader;
+use crate::puppet::masks::Masks;
 use crate::puppet::read::{Entry, degrees, find_part, pose_deg, tilt};
 use crate::staging::{Misplaced, Puppet, Staging};
 use crate::subject::{self, Subject};
 use crate::theatre::{Albedo, Ambient, Emitter, Exposure, Lamp, Mask, Texels, Theatre};
 use crate::timeline::{self, Driven, Target, Timeline};
 
-/// A valid scene: what is drawn, still or moving.
+/// A valid scene: what is drawn, still or moving. It never changes and may be shared; what drawing it makes anew is kept in [`Masks`].
 ///
 /// Every theatre it gives keeps the invariants that techniques rely on: everything is finite, sizes are positive, and
 /// every corner of every plane lies strictly between lamp and screen (for a timeline: at every frame and key).
 #[derive(Debug)]
 pub struct Scene {
     sha256: String,
+    toml: String,
     puppets: Vec<Puppet>,
     staging: Staging,
     timeline: Option<Timeline>,
@@ -61,6 +63,12 @@ impl Scene {
         &self.sha256
     }
 
+    /// The scene as TOML that reads to the same scene, with the same SHA-256, beside the same files: values as they were written, in one layout and
+    /// without comments.
+    pub fn to_toml(&self) -> &str {
+        &self.toml
+    }
+
     /// The scene as written, without its timeline.
     pub fn still(&self) -> Theatre {
         self.still.clone()
@@ -73,23 +81,33 @@ impl Scene {
 
     /// Where the lamp is at an instant of the timeline, metres; no puppet is posed for it.
     pub fn lamp_at(&self, time_s: f64) -> glam::DVec3 {
+        self.staging_at(time_s).lamp_m
+    }
+
+    /// The puppets in the file's order.
+    pub fn puppets(&self) -> &[Puppet] {
+        &self.puppets
+    }
+
+    /// Where lamp and puppets are as written.
+    pub fn staging(&self) -> &Staging {
+        &self.staging
+    }
+
+    /// Where lamp and puppets are at an instant of the timeline; as written when there is none.
+    pub fn staging_at(&self, time_s: f64) -> Staging {
         match &self.timeline {
-            Some(timeline) => self.staging.at(timeline, timeline.instant_s(time_s)).lamp_m,
-            None => self.still.lamp.position_m,
+            Some(timeline) => self.staging.at(timeline, timeline.instant_s(time_s)),
+            None => self.staging.clone(),
         }
     }
 
-    /// Forgets the masks of poses shown before, so that the next one is drawn anew: for measuring how long that takes.
-    pub fn forget_masks(&mut self) {
-        self.puppets.iter_mut().for_each(|puppet| puppet.figure.forget());
-    }
-
-    /// The scene at an instant of its timeline; as written when there is none. A puppet whose pose and rotation are as
-    /// in a recent call keeps its mask (the same [`Arc`], the same [`Mask::id`]).
-    pub fn theatre_at(&mut self, time_s: f64) -> Theatre {
-        let Some(timeline) = &self.timeline else { return self.still() };
-        let staging = self.staging.at(timeline, timeline.instant_s(time_s));
-        let planes = self.puppets.iter_mut().zip(&staging.puppets).map(|(p, s)| p.pose(s)).collect();
+    /// The scene at an instant of its timeline; as written when there is none. A puppet whose pose and rotation are as written, or as in a recent call
+    /// with the same `masks`, keeps its mask (the same [`Arc`], the same [`Mask::id`]).
+    pub fn theatre_at(&self, time_s: f64, masks: &mut Masks) -> Theatre {
+        let staging = self.staging_at(time_s);
+        let settings = self.puppets.iter().zip(&staging.puppets);
+        let planes = settings.map(|(p, s)| p.posed(s, masks.posed(&p.figure, &s.pose))).collect();
         let mut theatre = Theatre { planes, ..self.still.clone() };
         theatre.lamp.position_m = staging.lamp_m;
         theatre
@@ -180,14 +198,15 @@ fn read_scene(root: &Node, name: &str, loader: Loader) -> Option<Scene> {
 
     let (screen, ambient, exposure) = (screen?, ambient?, exposure?);
     let mut puppets: Vec<Puppet> = entries.into_iter().map(|e| e.puppet).collect();
-    for (i, puppet) in puppets.iter_mut().enumerate() {
+    let settled = puppets.iter_mut().zip(&staging.puppets).enumerate().map(|(i, (puppet, setting))| {
         let moving = moving_parts(timeline.as_ref(), i, puppet);
-        puppet.figure.settle(moving, &staging.puppets[i].pose);
-    }
-    let planes = puppets.iter_mut().zip(&staging.puppets).map(|(p, s)| p.pose(s)).collect();
+        let rest = puppet.figure.settle(moving, &setting.pose);
+        puppet.posed(setting, rest)
+    });
+    let planes = settled.collect();
     let still = Theatre { screen, lamp, ambient, planes, exposure };
     let sha256 = hash(&root.canonical(), loader.files());
-    Some(Scene { sha256, puppets, staging, timeline, still })
+    Some(Scene { sha256, toml: root.to_toml(), puppets, staging, timeline, still })
 }
 
 fn read_puppets<'a>(sections: &mut Fields<'a>, name: &str, loader: &Loader) -> Vec<Option<Entry<'a>>> {
@@ -278,7 +297,7 @@ fn check_still(lamp_z_m: f64, entries: &[Option<Entry>], root: &Node) {
 
 fn check_timeline(timeline: &Timeline, staging: &Staging, entries: &[Entry], root: &Node) {
     let frames = timeline.frame_count();
-    let parts: usize = entries.iter().map(|e| e.parts.len() + 1).sum();
+    let parts: usize = entries.iter().map(|e| e.puppet.parts.len() + 1).sum();
     let keys = timeline.tracks.iter().map(|t| t.keys.len()).sum::<usize>();
     if (frames + keys).saturating_mul(parts + timeline.tracks.len()) > 20_000_000 {
         let rule =
@@ -344,7 +363,7 @@ fn target<'r>(node: &Node, entries: &'r [Option<Entry>]) -> Option<Driven<'r>> {
         "tilt_deg" => Some((Target::Tilt(i), Box::new(|n| tilt(n).map(|t| t.to_vec())))),
         _ => {
             let Some(part) = field.strip_prefix("pose.") else { return node.refuse(known) };
-            let parts = entry?.parts.as_slice(); // a puppet that was refused has its own problems
+            let parts = entry?.puppet.parts(); // a puppet that was refused has its own problems
             let part = find_part(node, part, parts)?;
             if parts[part].pivot.is_none() {
                 let id = &parts[part].id;

@@ -4,28 +4,36 @@ use glam::DVec3;
 
 use crate::limits::{GRID_SIDE, SCENE_TEXELS};
 use crate::puppet::figure::{Figure, Pose};
+use crate::puppet::grid::Rect;
+use crate::puppet::manifest::Part;
+use crate::puppet::masks::Posed;
 use crate::theatre::{Mask, Plane};
 use crate::timeline::{Target, Timeline};
 use std::sync::Arc;
 
-/// Everything that a timeline can change.
-#[derive(Clone, Debug)]
-pub(crate) struct Staging {
+/// Everything that a timeline can change, at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Staging {
+    /// The lamp's centre, metres.
     pub lamp_m: DVec3,
+    /// Where each puppet is, in the order of [`Scene::puppets`](crate::Scene::puppets).
     pub puppets: Vec<Setting>,
 }
 
 /// Where one puppet is and how it is posed.
-#[derive(Clone, Debug)]
-pub(crate) struct Setting {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// Its centre, metres.
     pub position_m: DVec3,
+    /// Its plane's turn about x, then about y, degrees.
     pub tilt_deg: [f64; 2],
+    /// Its parts and its turn in the plane.
     pub pose: Pose,
 }
 
 impl Staging {
     /// This staging with what the timeline drives as it is at `instant_s`.
-    pub fn at(&self, timeline: &Timeline, instant_s: f64) -> Staging {
+    pub(crate) fn at(&self, timeline: &Timeline, instant_s: f64) -> Staging {
         let mut staging = self.clone();
         for track in &timeline.tracks {
             let value = track.value(instant_s);
@@ -42,11 +50,14 @@ impl Staging {
     }
 }
 
-/// A figure and the size of its texels.
+/// A puppet of a scene: what it is made of, wherever it is.
 #[derive(Debug)]
-pub(crate) struct Puppet {
-    pub figure: Figure,
-    pub texel_m: f64,
+pub struct Puppet {
+    pub(crate) image: String,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) figure: Figure,
+    /// A texel's side.
+    pub(crate) texel_m: f64,
 }
 
 /// What keeps a puppet from being where a staging has it.
@@ -60,8 +71,18 @@ pub(crate) enum Misplaced {
 }
 
 impl Puppet {
+    /// The path of its SVG, PNG or manifest, as the scene has it.
+    pub fn image(&self) -> &str {
+        &self.image
+    }
+
+    /// Its parts in drawing order; none where it is one piece.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
     /// The occluder plane of a setting whose mask covers the texels of `extent`.
-    fn plane(&self, setting: &Setting, extent: crate::puppet::grid::Rect, mask: Arc<Mask>) -> Plane {
+    fn plane(&self, setting: &Setting, extent: Rect, mask: Arc<Mask>) -> Plane {
         let (centre, size) = self.figure.placement(extent);
         let mut plane = Plane {
             mask,
@@ -73,14 +94,18 @@ impl Puppet {
         plane
     }
 
-    /// The plane of a setting, with its mask.
-    pub fn pose(&mut self, setting: &Setting) -> Plane {
-        let (extent, mask) = self.figure.mask(&setting.pose);
-        self.plane(setting, extent, mask)
+    /// The plane of a setting, with the mask of its pose.
+    pub(crate) fn posed(&self, setting: &Setting, posed: Posed) -> Plane {
+        self.plane(setting, posed.extent, posed.mask)
     }
 
     /// Whether a setting is between lamp and screen with every corner, and its grid bearable; the grid's texel values.
-    pub fn check(&self, setting: &Setting, lamp_z_m: f64, nothing: &Arc<Mask>) -> Result<usize, Misplaced> {
+    pub(crate) fn check(
+        &self,
+        setting: &Setting,
+        lamp_z_m: f64,
+        nothing: &Arc<Mask>,
+    ) -> Result<usize, Misplaced> {
         let backstage = |z: f64| z > lamp_z_m && z < 0.0;
         if !backstage(setting.position_m.z) {
             return Err(Misplaced::Centre(setting.position_m.z));

@@ -220,6 +220,14 @@ impl Mask {
         Self { width, height, channels, texels, id }
     }
 
+    /// Bytes of its texels.
+    pub(crate) fn bytes(&self) -> usize {
+        match &self.texels {
+            Texels::U8(t) => t.len(),
+            Texels::U16(t) => 2 * t.len(),
+        }
+    }
+
     /// The largest code: 255 or 65535.
     pub fn max_code(&self) -> u32 {
         match self.texels {

@@ -14,6 +14,7 @@ pub struct Drawing<'j, S: Staged = Scene> {
     codes: Vec<u32>,
     /// What `codes` show.
     last: Option<S::Subject>,
+    kept: S::Kept,
 }
 
 /// A frame that was drawn.
@@ -37,7 +38,7 @@ impl<'j, S: Staged> Drawing<'j, S> {
         job.view.check(&job.scene.still())?;
         let white = job.exposure.white(&job.scene, &job.view, job.time_s);
         let codes = vec![0; job.view.size[0] * job.view.size[1]];
-        Ok(Self { job, renderer, white, codes, last: None })
+        Ok(Self { job, renderer, white, codes, last: None, kept: S::Kept::default() })
     }
 
     /// The radiance shown as white.
@@ -62,13 +63,10 @@ impl<'j, S: Staged> Drawing<'j, S> {
 
     /// What frame `index` shows.
     pub(super) fn subject(&mut self, index: usize) -> S::Subject {
-        let Job { scene, output, time_s, .. } = &mut *self.job;
+        let Job { scene, output, time_s, .. } = &*self.job;
         match (output, scene.timeline(), time_s) {
-            (Output::Animation, Some(timeline), _) => {
-                let time_s = timeline.frame_time_s(index);
-                scene.at(time_s)
-            }
-            (_, _, Some(time_s)) => scene.at(*time_s),
+            (Output::Animation, Some(timeline), _) => scene.at(timeline.frame_time_s(index), &mut self.kept),
+            (_, _, Some(time_s)) => scene.at(*time_s, &mut self.kept),
             _ => scene.still(),
         }
     }

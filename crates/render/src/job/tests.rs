@@ -4,7 +4,7 @@ mod card;
 
 use std::collections::BTreeMap;
 
-use kelir_scene::Assets;
+use kelir_scene::{Assets, Masks};
 
 use super::*;
 use crate::{encode, exposure, mc, oracle, pa};
@@ -161,8 +161,9 @@ keys = [ { t = 0.0, value = [0.0, 0.0, -1.4] }, { t = 0.3, value = [0.0, 0.0, -1
 fn each_rule_of_exposure_by_its_definition() {
     let mut job = job(LAMP, pa(), Output::Still);
     let view = job.view;
-    let at: Vec<f64> =
-        (0..4).map(|k| exposure::white([&job.scene.theatre_at(0.1 * f64::from(k))], &view)).collect();
+    let at: Vec<f64> = (0..4)
+        .map(|k| exposure::white([&job.scene.theatre_at(0.1 * f64::from(k), &mut Masks::default())], &view))
+        .collect();
     let white = |rule: Rule, time_s| rule.white(&job.scene, &view, time_s);
     assert_eq!(white(Rule::Still, None), exposure::white([&job.scene.still()], &view));
     assert_eq!(white(Rule::Still, Some(0.2)), at[2]);

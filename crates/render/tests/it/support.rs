@@ -5,7 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use kelir_scene::{
-    Albedo, Ambient, Emitter, EmitterShape, Exposure, Lamp, Mask, Plane, Scene, Screen, Texels, Theatre,
+    Albedo, Ambient, Emitter, EmitterShape, Exposure, Lamp, Mask, Masks, Plane, Scene, Screen, Texels,
+    Theatre,
 };
 
 /// A scene that ships: its name, the theatre as written, and one later instant of its timeline.
@@ -25,13 +26,13 @@ pub fn shipped() -> &'static [Shipped] {
         paths.retain(|p| p.extension().is_some_and(|e| e == "toml"));
         paths.sort();
         let read = |path: &PathBuf| {
-            let mut scene = Scene::from_path(path).unwrap_or_else(|errors| panic!("{errors}"));
+            let scene = Scene::from_path(path).unwrap_or_else(|errors| panic!("{errors}"));
             let seconds = scene.timeline().map(|t| t.seconds);
             Shipped {
                 name: path.file_stem().unwrap().to_str().unwrap().to_owned(),
                 sha256: scene.sha256().to_owned(),
                 still: scene.still(),
-                later: seconds.map(|s| scene.theatre_at(0.4 * s)),
+                later: seconds.map(|s| scene.theatre_at(0.4 * s, &mut Masks::default())),
             }
         };
         paths.iter().map(read).collect()

@@ -5,19 +5,19 @@ use std::sync::Arc;
 use super::compose::{Code, Placed, Plate, compose, multiply};
 use super::grid::{Lattice, Rect, Rigid, Texture};
 use super::manifest::Part;
+use super::masks::Posed;
 use crate::theatre::{Mask, Texels};
 
-/// Bytes of masks that a puppet keeps for poses that come again, as in a loop.
-const KEPT_BYTES: usize = 64 << 20;
-
-/// How a figure is posed: degrees by part, then the whole figure's rotation about its centre.
+/// How a puppet is posed: its parts about their pivots, then the whole about its centre. Degrees, counter-clockwise as the audience sees it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Pose {
+pub struct Pose {
+    /// Each part's turn against the part that it hangs on, in the order of [`Puppet::parts`](crate::Puppet::parts); 0 is as drawn.
     pub parts_deg: Vec<f64>,
+    /// The whole puppet's turn in its plane.
     pub rotate_deg: f64,
 }
 
-/// Parts, their textures and the masks made of them.
+/// Parts and their textures.
 #[derive(Debug)]
 pub(crate) struct Figure {
     lattice: Lattice,
@@ -29,7 +29,8 @@ pub(crate) struct Figure {
     /// Set by [`Figure::settle`]: which parts may move, and the product of those that don't.
     moving: Vec<bool>,
     plate: Option<Still>,
-    kept: Vec<(Pose, Rect, Arc<Mask>)>,
+    /// Set by [`Figure::settle`]: the pose as written, which every drawing shares.
+    rest: Option<Posed>,
 }
 
 /// The product of the parts that never move, as [`Plate`] wants it.
@@ -85,16 +86,7 @@ impl Figure {
             textures.iter_mut().for_each(Texture::widen);
         }
         let moving = vec![true; textures.len()];
-        Self {
-            lattice,
-            parts: joints.collect(),
-            textures,
-            channels,
-            bits,
-            moving,
-            plate: None,
-            kept: Vec::new(),
-        }
+        Self { lattice, parts: joints.collect(), textures, channels, bits, moving, plate: None, rest: None }
     }
 
     /// 1 or 3.
@@ -144,14 +136,13 @@ impl Figure {
         (centre, [extent.width() as f64, extent.height() as f64])
     }
 
-    /// Fixes which parts may move from now on and multiplies the others, as `pose` has them, once and for all.
-    pub fn settle(&mut self, moving: Vec<bool>, pose: &Pose) {
-        self.kept.clear();
+    /// Fixes which parts may move from now on, multiplies the others, as `pose` has them, once and for all, and draws that pose.
+    pub fn settle(&mut self, moving: Vec<bool>, pose: &Pose) -> Posed {
         if !moving.contains(&true) {
             // One mask is all there will be: draw it from the parts, and keep nothing else.
-            self.mask(pose);
+            let rest = self.posed(pose, None);
             self.textures.iter_mut().for_each(|t| t.opacity = Vec::new());
-            return;
+            return self.rest.insert(rest).clone();
         }
         self.moving = moving;
         let still: Vec<usize> = (0..self.textures.len()).filter(|&p| !self.moving[p]).collect();
@@ -168,18 +159,23 @@ impl Figure {
             // Multiplied into the plate; the bounds are still needed for the extent.
             self.textures[p].opacity = Vec::new();
         }
+        let rest = self.posed(pose, None);
+        self.rest.insert(rest).clone()
     }
 
-    /// The mask of a pose and the texels that it covers. Equal poses give the same mask while it is remembered.
-    pub fn mask(&mut self, pose: &Pose) -> (Rect, Arc<Mask>) {
-        if let Some(at) = self.kept.iter().position(|(kept, ..)| kept == pose) {
-            let found = self.kept.remove(at);
-            let answer = (found.1, found.2.clone());
-            self.kept.push(found);
-            return answer;
-        }
+    /// The pose that it was settled in.
+    pub fn rest(&self) -> Option<&Posed> {
+        self.rest.as_ref()
+    }
+
+    /// Bytes of a mask that covers the texels of `extent`.
+    pub fn bytes(&self, extent: Rect) -> usize {
+        extent.area() * self.channels * (self.bits as usize / 8)
+    }
+
+    /// Draws a pose, into texels that nobody needs any more where there are some.
+    pub fn posed(&self, pose: &Pose, spent: Option<Texels>) -> Posed {
         let extent = self.extent(pose);
-        let spent = self.make_room(extent.area() * self.channels * (self.bits as usize / 8));
         let texels = match (self.bits, spent) {
             (16, Some(Texels::U16(codes))) => Texels::U16(self.draw(extent, pose, codes)),
             (16, _) => Texels::U16(self.draw(extent, pose, Vec::new())),
@@ -187,15 +183,7 @@ impl Figure {
             (..) => Texels::U8(self.draw(extent, pose, Vec::new())),
         };
         let mask = Arc::new(Mask::new(extent.width(), extent.height(), self.channels, texels));
-        self.kept.push((pose.clone(), extent, mask.clone()));
-        (extent, mask)
-    }
-
-    /// Forgets the masks of a figure that moves; a figure at rest has but the one.
-    pub fn forget(&mut self) {
-        if self.textures.iter().zip(&self.moving).any(|(t, moving)| *moving && !t.opacity.is_empty()) {
-            self.kept.clear();
-        }
+        Posed { pose: pose.clone(), extent, mask }
     }
 
     /// The codes of a pose on the texels of `extent`, in a buffer that may be reused.
@@ -209,19 +197,5 @@ impl Figure {
             _ => compose::<C, 4>(extent, self.plate.as_ref().map(Still::plate), &parts, &mut codes),
         }
         codes
-    }
-
-    /// Forgets the masks that were not asked for longest until `bytes` more fit; the texels of one that
-    /// nobody holds any more are handed back for reuse.
-    fn make_room(&mut self, bytes: usize) -> Option<Texels> {
-        let size = |mask: &Mask| mask.width * mask.height * mask.channels * (self.bits as usize / 8);
-        let mut held: usize = self.kept.iter().map(|(.., mask)| size(mask)).sum();
-        let mut spent = None;
-        while held + bytes > KEPT_BYTES && self.kept.len() > 1 {
-            let (.., mask) = self.kept.remove(0);
-            held -= size(&mask);
-            spent = Arc::into_inner(mask).map(|mask| mask.texels).or(spent);
-        }
-        spent
     }
 }

@@ -6,16 +6,16 @@ use kelir_reader::{Node, did_you_mean, list};
 
 use crate::limits;
 
-/// One part as the manifest has it, in drawing order.
+/// A part of a puppet that turns, as its manifest has it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Part {
-    /// The SVG group's id.
+pub struct Part {
+    /// Its name: the id of the SVG's group.
     pub id: String,
-    /// Index of the part that it hangs on.
+    /// Index of the part that it hangs on, and is carried along by.
     pub parent: Option<usize>,
-    /// What it turns about, SVG user units; a part without one can't be posed.
+    /// The joint that it turns about, [x, y] in the SVG's user units, y down; a part without one can't be posed.
     pub pivot: Option<[f64; 2]>,
-    /// The least and the greatest pose.
+    /// The least and the greatest pose in degrees, counter-clockwise; 0, as drawn, is between them. Without them any.
     pub limits_deg: Option<[f64; 2]>,
 }
 

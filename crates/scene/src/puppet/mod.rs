@@ -5,5 +5,6 @@ pub(crate) mod compose;
 pub(crate) mod figure;
 pub(crate) mod grid;
 pub(crate) mod manifest;
+pub(crate) mod masks;
 pub(crate) mod read;
 pub(crate) mod svg;

@@ -18,7 +18,6 @@ pub(crate) struct Entry<'a> {
     pub node: Node<'a>,
     pub position: Option<Node<'a>>,
     pub tilt: Option<Node<'a>>,
-    pub parts: Vec<Part>,
     pub setting: Setting,
     pub puppet: Puppet,
 }
@@ -73,8 +72,11 @@ pub(crate) fn find_part(node: &Node, name: &str, parts: &[Part]) -> Option<usize
 /// Reads a puppet; `name` is the scene's path from the root.
 pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<Entry<'a>> {
     let mut fields = node.table()?;
-    let art =
-        fields.need("image", "the path of an SVG, a PNG or a puppet manifest", |n| open(n, name, loader));
+    let mut image = None;
+    let art = fields.need("image", "the path of an SVG, a PNG or a puppet manifest", |n| {
+        image = n.as_str().map(str::to_owned);
+        open(n, name, loader)
+    });
     let height_m = fields.need("height_m", "the puppet's height in metres", length);
     let mut position = None;
     let position_m = fields.need("position_m", "the puppet's centre [x, y, z] in metres", |n| {
@@ -118,8 +120,8 @@ pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<E
         pose: Pose { parts_deg: pose?, rotate_deg: rotate_deg? },
     };
     let texel_m = height_m / lattice.rows as f64;
-    let puppet = Puppet { figure, texel_m };
-    Some(Entry { node: node.clone(), position, tilt: tilt_node, parts: art.parts, setting, puppet })
+    let puppet = Puppet { image: image?, parts: art.parts, figure, texel_m };
+    Some(Entry { node: node.clone(), position, tilt: tilt_node, setting, puppet })
 }
 
 /// `{ part = degrees }`; without a known puppet only the values' types are checked.

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 
 use crate::support::{Files, MANIFEST, PUPPET_SVG, SCENE, files, parse, png};
-use kelir_scene::{EmitterShape, Plane, Theatre};
+use kelir_scene::{EmitterShape, Masks, Plane, Scene, Theatre};
 
 fn config(seed: u64) -> Config {
     let cases = std::env::var("PROPTEST_CASES").ok().and_then(|c| c.parse().ok()).unwrap_or(256);
@@ -120,15 +120,20 @@ pub fn read(toml: &str, files: &Files) -> Result<bool, TestCaseError> {
             }
             Ok(false)
         }
-        Ok(mut scene) => {
+        Ok(scene) => {
             check(&scene.still())?;
+            let mut masks = Masks::default();
             let frames: Vec<f64> = scene
                 .timeline()
                 .map(|t| (0..t.frame_count().min(4)).map(|f| t.frame_time_s(f)).collect())
                 .unwrap_or_default();
             for time in frames {
-                check(&scene.theatre_at(time))?;
+                check(&scene.theatre_at(time, &mut masks))?;
             }
+            // Whatever was accepted is written back to what reads to the same scene.
+            let again = parse(scene.to_toml(), files);
+            let again = again.as_ref().map(Scene::sha256).map_err(ToString::to_string);
+            prop_assert_eq!(again, Ok(scene.sha256()), "{}", scene.to_toml());
             Ok(true)
         }
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::support::{SCENE, files, parse, rows};
-use kelir_scene::{Plane, Scene};
+use kelir_scene::{Masks, Plane, Scene, Theatre};
 
 /// The scene with `lines` in its puppet.
 fn posed(lines: &str) -> Plane {
@@ -206,6 +206,11 @@ easing = "step"
 keys = [ { t = 0.0, value = [0.0, 0.0, -1.5] }, { t = 1.0, value = [0.1, 0.0, -1.5] } ]
 "#;
 
+/// The scene at an instant, for whom keeps no masks.
+fn at(scene: &Scene, time_s: f64) -> Theatre {
+    scene.theatre_at(time_s, &mut Masks::default())
+}
+
 fn moving(lines: &str) -> Scene {
     let scene = SCENE.replace("texels = 128", &format!("texels = 128\n{lines}"));
     parse(&format!("{scene}{MOVING}"), &files()).unwrap()
@@ -213,63 +218,104 @@ fn moving(lines: &str) -> Scene {
 
 #[test]
 fn a_timeline_moves_what_its_tracks_name() {
-    let mut scene = moving("");
+    let scene = moving("");
     assert_eq!(scene.timeline().unwrap().frame_count(), 20);
-    let x = |scene: &mut Scene, t| scene.theatre_at(t).planes[0].centre_m.x;
-    assert_eq!(x(&mut scene, 0.0), 0.0);
+    let x = |t| at(&scene, t).planes[0].centre_m.x;
+    assert_eq!(x(0.0), 0.0);
     // Half-way in time is half-way in value; a quarter of the way (1 − cos 45°)/2.
-    assert!((x(&mut scene, 1.0) - 0.2).abs() < 1e-12);
-    assert!((x(&mut scene, 0.75) - 0.4 * 0.146446609406726).abs() < 1e-12);
-    assert!((x(&mut scene, 1.9) - 0.4).abs() < 1e-12);
-    let lamp = |scene: &mut Scene, t| scene.theatre_at(t).lamp.position_m.x;
-    assert_eq!([lamp(&mut scene, 0.99), lamp(&mut scene, 1.0)], [0.0, 0.1]);
+    assert!((x(1.0) - 0.2).abs() < 1e-12);
+    assert!((x(0.75) - 0.4 * 0.146446609406726).abs() < 1e-12);
+    assert!((x(1.9) - 0.4).abs() < 1e-12);
+    let lamp = |t| at(&scene, t).lamp.position_m.x;
+    assert_eq!([lamp(0.99), lamp(1.0)], [0.0, 0.1]);
     // Looping, the end is the start again, and so is every later round.
-    assert_eq!(x(&mut scene, 2.0), 0.0);
-    assert!((x(&mut scene, 2.75) - x(&mut scene, 0.75)).abs() < 1e-12);
-    assert_eq!(x(&mut scene, f64::NAN), 0.0, "no time is no reason to fail");
+    assert_eq!(x(2.0), 0.0);
+    assert!((x(2.75) - x(0.75)).abs() < 1e-12);
+    assert_eq!(x(f64::NAN), 0.0, "no time is no reason to fail");
 }
 
 #[test]
 fn a_pose_on_the_timeline_is_the_pose_in_the_file() {
     for (t, degrees) in [(0.0, 0.0), (0.5, 20.0), (1.0, 40.0), (1.25, 30.0)] {
-        let shown = moving("").theatre_at(t).planes.remove(0);
+        let shown = at(&moving(""), t).planes.remove(0);
         let lines = format!("pose = {{ bar = {degrees:?} }}");
         let written =
             parse(&SCENE.replace("texels = 128", &format!("texels = 128\n{lines}")), &files()).unwrap();
         let written = written.still().planes.remove(0);
         assert_eq!(rows(&shown.mask, 0), rows(&written.mask, 0), "{degrees}°");
         // Control: a little later it is another pose.
-        assert_ne!(rows(&moving("").theatre_at(t + 0.1).planes[0].mask, 0), rows(&written.mask, 0));
+        assert_ne!(rows(&at(&moving(""), t + 0.1).planes[0].mask, 0), rows(&written.mask, 0));
     }
 }
 
 #[test]
 fn equal_poses_share_their_mask_and_different_ones_do_not() {
-    let mut scene = moving("");
-    let first = scene.theatre_at(0.3).planes.remove(0).mask;
-    let other = scene.theatre_at(0.4).planes.remove(0).mask;
+    let scene = moving("");
+    let mut masks = Masks::default();
+    let mut mask_at = |t| scene.theatre_at(t, &mut masks).planes.remove(0).mask;
+    let first = mask_at(0.3);
+    let other = mask_at(0.4);
     assert!(!Arc::ptr_eq(&first, &other) && first.id != other.id);
-    let again = scene.theatre_at(2.3 - 2.0).planes.remove(0).mask;
-    let back = scene.theatre_at(0.4).planes.remove(0).mask;
+    let again = mask_at(2.3 - 2.0);
+    let back = mask_at(0.4);
     assert!(Arc::ptr_eq(&other, &back), "a mask that was just shown is kept");
     assert_eq!(rows(&again, 0), rows(&first, 0));
-    scene.forget_masks();
-    let anew = scene.theatre_at(0.4).planes.remove(0).mask;
-    assert!(!Arc::ptr_eq(&anew, &back) && rows(&anew, 0) == rows(&back, 0), "forgotten, it is drawn anew");
-    // What never moves is not lost by forgetting.
-    let mut still = parse(&format!("{SCENE}[timeline]\nfps = 1\nseconds = 1\n"), &files()).unwrap();
-    still.forget_masks();
-    assert_eq!(still.theatre_at(0.0).planes[0].mask.id, still.still().planes[0].mask.id);
-    assert!(Arc::ptr_eq(&scene.still().planes[0].mask, &scene.still().planes[0].mask));
+    let anew = at(&scene, 0.4).planes.remove(0).mask;
+    assert!(
+        !Arc::ptr_eq(&anew, &back) && rows(&anew, 0) == rows(&back, 0),
+        "who keeps none has it drawn anew"
+    );
+    // The masks of one scene are never another's, though it hangs in the same pose.
+    let coarse = SCENE.replace("texels = 128", "texels = 64");
+    let coarse = parse(&format!("{coarse}{MOVING}"), &files()).unwrap();
+    assert_ne!(coarse.theatre_at(0.4, &mut masks).planes[0].mask.width, back.width);
+    // What is posed as written is there from the start, and every drawing has the same.
+    let still = parse(&format!("{SCENE}[timeline]\nfps = 1\nseconds = 1\n"), &files()).unwrap();
+    assert_eq!(at(&still, 0.0).planes[0].mask.id, still.still().planes[0].mask.id);
+    assert!(Arc::ptr_eq(&scene.still().planes[0].mask, &at(&scene, 0.0).planes[0].mask));
+}
+
+#[test]
+fn a_scene_is_shared_by_threads_that_pose_it_at_once() {
+    let scene = Arc::new(moving(""));
+    let drawn = |t: f64| rows(&at(&scene, t).planes[0].mask, 0);
+    let expected = [0.3, 0.7, 1.1].map(drawn);
+    let threads = [0.3, 0.7, 1.1].map(|t| {
+        let scene = scene.clone();
+        std::thread::spawn(move || rows(&at(&scene, t).planes[0].mask, 0))
+    });
+    let shown = threads.map(|thread| thread.join().unwrap());
+    assert!(shown == expected && shown[0] != shown[1], "each thread has the pose that it asked for");
+}
+
+#[test]
+fn parts_joints_and_poses_are_there_to_be_read() {
+    let scene = moving("pose = { leaf = 10.0 }\nrotate_deg = 5");
+    let [puppet] = scene.puppets() else { panic!("one puppet") };
+    assert_eq!(puppet.image(), "../puppets/figure.toml");
+    let parts: Vec<_> = puppet.parts().iter().map(|p| (p.id.as_str(), p.parent, p.pivot)).collect();
+    let joints =
+        [("body", None, None), ("bar", Some(0), Some([64.0, 64.0])), ("leaf", Some(1), Some([112.0, 64.0]))];
+    assert_eq!(parts, joints);
+    assert_eq!(puppet.parts()[1].limits_deg, Some([-120.0, 180.0]));
+    let written = &scene.staging().puppets[0];
+    assert_eq!((written.pose.parts_deg.as_slice(), written.pose.rotate_deg), (&[0.0, 0.0, 10.0][..], 5.0));
+    // Half-way in time the bar has turned half its way, and the puppet has gone half of its.
+    let later = scene.staging_at(1.0);
+    assert_eq!(later.puppets[0].pose.parts_deg, [0.0, 40.0, 10.0]);
+    assert!((later.puppets[0].position_m.x - 0.2).abs() < 1e-12 && later.lamp_m.x == 0.1, "{later:?}");
+    assert_eq!(parse(SCENE, &files()).unwrap().staging_at(1.0), *parse(SCENE, &files()).unwrap().staging());
 }
 
 #[test]
 fn many_poses_in_any_order_give_the_same_masks() {
     // Buffers are reused and plates cached: history must not show.
-    let mut scene = moving("pose = { leaf = 10.0 }");
+    let scene = moving("pose = { leaf = 10.0 }");
+    let mut masks = Masks::default();
     let times = [0.1, 0.9, 0.5, 0.2, 0.9, 1.3];
-    let shown: Vec<_> = times.iter().map(|&t| rows(&scene.theatre_at(t).planes[0].mask, 0)).collect();
+    let shown: Vec<_> =
+        times.iter().map(|&t| rows(&scene.theatre_at(t, &mut masks).planes[0].mask, 0)).collect();
     for (&t, shown) in times.iter().zip(&shown) {
-        assert_eq!(&rows(&moving("pose = { leaf = 10.0 }").theatre_at(t).planes[0].mask, 0), shown, "{t} s");
+        assert_eq!(&rows(&at(&moving("pose = { leaf = 10.0 }"), t).planes[0].mask, 0), shown, "{t} s");
     }
 }

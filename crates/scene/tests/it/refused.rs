@@ -75,7 +75,7 @@ fn another_subject_cannot_be_drawn_yet() {
     for (subject, what) in [("stage", "a stage of meshes"), ("plate", "a photographed shadow")] {
         let found = messages(&format!("subject = \"{subject}\"\n[meshes]\nfile = \"a.glb\"\n"));
         let wanted = format!(
-            "scenes/test.toml: subject = \"{subject}\": {what} can't be drawn yet, only a \"theatre\""
+            "scenes/test.toml:1:11: subject = \"{subject}\": {what} can't be drawn yet, only a \"theatre\""
         );
         assert_eq!(found, [wanted]);
     }

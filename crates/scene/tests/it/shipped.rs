@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use kelir_scene::{Albedo, Ambient, Emitter, EmitterShape, Mask, Plane, Scene, Theatre};
+use kelir_scene::{Albedo, Ambient, DirAssets, Emitter, EmitterShape, Mask, Masks, Plane, Scene, Theatre};
 
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../stimuli/scenes");
@@ -36,13 +36,14 @@ fn every_scene_loads_and_its_shadows_lie_on_the_screen() {
     let paths = scenes();
     assert!(paths.len() >= 10, "{paths:?}");
     for path in paths {
-        let mut scene = Scene::from_path(&path).unwrap_or_else(|errors| panic!("{errors}"));
+        let scene = Scene::from_path(&path).unwrap_or_else(|errors| panic!("{errors}"));
         let times: Vec<f64> = match scene.timeline() {
             Some(t) => (0..t.frame_count()).step_by(15).map(|f| t.frame_time_s(f)).collect(),
             None => vec![0.0],
         };
+        let mut masks = Masks::default();
         for time_s in times {
-            let theatre = scene.theatre_at(time_s);
+            let theatre = scene.theatre_at(time_s, &mut masks);
             for (i, plane) in theatre.planes.iter().enumerate() {
                 let mut reach = [f64::MAX, f64::MIN, f64::MIN, f64::MAX]; // left, right, top, bottom
                 // Every other texel is enough: nothing drawn is thinner than two.
@@ -134,10 +135,11 @@ fn penumbra_share(theatre: &Theatre, [width, height]: [usize; 2]) -> f64 {
 
 #[test]
 fn benchmark_is_what_its_figures_claim() {
-    let mut scene = scene("benchmark");
-    let theatre = scene.still();
+    let scene = scene("benchmark");
+    let (theatre, mut masks) = (scene.still(), Masks::default());
     // Every frame of its timeline has a mask of its own: raster and table are part of what a posed frame costs.
-    let posed: Vec<u64> = [0.1, 0.2].map(|time_s| scene.theatre_at(time_s).planes[0].mask.id).into();
+    let posed: Vec<u64> =
+        [0.1, 0.2].map(|time_s| scene.theatre_at(time_s, &mut masks).planes[0].mask.id).into();
     assert!(posed[0] != posed[1] && !posed.contains(&theatre.planes[0].mask.id));
     assert_eq!(theatre.lamp.emitters.len(), 2);
     assert!(theatre.lamp.emitters.iter().all(|e| matches!(e.shape, EmitterShape::Rectangle { .. })));
@@ -157,11 +159,30 @@ fn benchmark_is_what_its_figures_claim() {
 
 #[test]
 fn the_dance_is_a_loop_of_two_seconds() {
-    let mut scene = scene("arjuna-dance");
+    let scene = scene("arjuna-dance");
     let timeline = scene.timeline().unwrap();
     assert!(timeline.repeat);
     assert_eq!(timeline.frame_count(), 60);
-    let (first, last) = (scene.theatre_at(0.0), scene.theatre_at(2.0));
+    let mut masks = Masks::default();
+    let [first, middle, last] = [0.0, 1.0, 2.0].map(|time_s| scene.theatre_at(time_s, &mut masks));
     assert_eq!(first.planes[0].mask.id, last.planes[0].mask.id, "it ends where it begins");
-    assert_ne!(first.planes[0].mask.id, scene.theatre_at(1.0).planes[0].mask.id, "it moves");
+    assert_ne!(first.planes[0].mask.id, middle.planes[0].mask.id, "it moves");
+}
+
+#[test]
+fn every_scene_is_written_back_to_what_reads_to_the_same_hash() {
+    for path in scenes() {
+        let read = |toml: &str| {
+            let files = DirAssets::new(path.parent().unwrap().parent().unwrap());
+            let name = format!("scenes/{}", path.file_name().unwrap().to_string_lossy());
+            Scene::parse(&name, toml, &files).unwrap_or_else(|errors| panic!("{errors}\n{toml}"))
+        };
+        let scene = read(&std::fs::read_to_string(&path).unwrap());
+        let again = read(scene.to_toml());
+        assert_eq!(again.sha256(), scene.sha256(), "{}", path.display());
+        assert_eq!(again.to_toml(), scene.to_toml(), "written twice it is the same text");
+        // Negative control: another value is another scene.
+        let changed = scene.to_toml().replacen("width_m = 1", "width_m = 2", 1);
+        assert_ne!(read(&changed).sha256(), scene.sha256(), "{}", path.display());
+    }
 }

@@ -13,12 +13,12 @@ pub fn run(drawing: &Drawing, count: usize, with_scaling: bool, figures: &Figure
     if count == 0 {
         return Err(bad_input("frames = 0: at least one frame is drawn"));
     }
-    let mut scene = drawing.load()?;
+    let scene = drawing.load()?;
     let view = drawing.view(&scene.still());
     let technique = drawing.technique()?;
     let cases = [Case::Slid, Case::Posed, Case::LampMoved, Case::NothingSkipped];
     let report =
-        bench::frames(&mut scene, &technique, drawing.backend, &view, count, &cases).map_err(render_error)?;
+        bench::frames(&scene, &technique, drawing.backend, &view, count, &cases).map_err(render_error)?;
     let [width, height] = report.size;
     figures.say(&format!("{width}x{height}, {} frames a case, {}\n", report.frames, report.adapter))?;
     let header =

@@ -62,6 +62,7 @@ struct Deck {
 
 impl Staged for Deck {
     type Subject = Card;
+    type Kept = ();
 
     fn sha256(&self) -> &str {
         self.name
@@ -75,7 +76,7 @@ impl Staged for Deck {
         Card { edge: 0.25 }
     }
 
-    fn at(&mut self, time_s: f64) -> Card {
+    fn at(&self, time_s: f64, (): &mut ()) -> Card {
         Card { edge: 0.25 + time_s.min(0.2) }
     }
 
