@@ -1,7 +1,7 @@
 //! Monte Carlo: an unbiased estimate of each emitter's irradiance E_k, with a standard error per pixel.
 //!
 //! Owen-scrambled Sobol points spread over the emitter (and over the pixel for `area`); sixteen independent scrambles
-//! give sixteen estimates whose spread is the standard error ([`crate::trace`]). No pilot run decides what is estimated, so it stays
+//! give sixteen estimates whose spread is the standard error (`trace`). No pilot run decides what is estimated, so it stays
 //! unbiased.
 
 mod budget;
