@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use kelir_fixtures::block;
 use kelir_tests::{Server, Taking, browser, kelir_ok, root, small_data, sql};
 use serde_json::{Value, json};
 
-use crate::kinds::{Stored, block, stats, stored, study};
+use crate::kinds::{Stored, stats, stored, study};
 
 /// Levels of the items, and the most trials of either procedure.
 const LEVELS: u32 = 8;
@@ -33,7 +34,7 @@ fn data(procedure: &str) -> tempfile::TempDir {
          [blocks.adaptive]\n{procedure}",
         items.join(", ")
     );
-    let text = study("[64, 36]", &[pair("before"), block("steps", &levels), pair("after")].concat());
+    let text = study("[64, 36]", &[pair("before"), block("steps", &levels), pair("after")]);
     std::fs::write(data.path().join("studies/adaptive.toml"), text).unwrap();
     data
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use kelir_fixtures as fixtures;
 use kelir_tests::{kelir, kelir_ok, root};
 
 /// Runs a command that must refuse its input: exit code 2, every phrase in the message, nothing on standard output.
@@ -22,28 +23,6 @@ fn write(folder: &Path, name: &str, text: &str) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-const SCENE: &str = r#"
-[screen]
-width_m = 1.6
-height_m = 0.9
-albedo = 0.8
-[lamp]
-position_m = [0.0, 0.0, -1.5]
-[[lamp.emitters]]
-name = "inner"
-shape = "rectangle"
-size_m = [0.02, 0.02]
-radiance = 2000.0
-[ambient]
-model = "none"
-[[puppets]]
-image = "dot.png"
-height_m = 0.3
-position_m = [0.0, 0.0, -0.2]
-[exposure]
-white = "auto"
-"#;
-
 /// A small scene with a PNG puppet: an opaque square in a clear frame.
 fn scene(folder: &Path, edit: impl Fn(&str) -> String) -> String {
     let mut dot = image::RgbaImage::new(8, 8);
@@ -51,7 +30,7 @@ fn scene(folder: &Path, edit: impl Fn(&str) -> String) -> String {
         pixel.0 = if (2..6).contains(&x) && (2..6).contains(&y) { [0, 0, 0, 255] } else { [0; 4] };
     }
     dot.save(folder.join("dot.png")).unwrap();
-    write(folder, "scene.toml", &edit(SCENE))
+    write(folder, "scene.toml", &edit(&fixtures::SCENE.replace("../puppets/square.svg", "dot.png")))
 }
 
 /// A knob that the technique does not have was taken and ignored.
@@ -155,7 +134,7 @@ fn a_wrong_scene_names_every_problem_and_writes_nothing() {
     let out = folder.path().join("out.png");
     let path = scene(folder.path(), |good| {
         good.replace("-0.2]", "0.3]")
-            .replace("radiance = 2000.0", "radiance = nan\nbrightness = 3")
+            .replace("radiance = 40.0", "radiance = nan\nbrightness = 3")
             .replace("width_m = 1.6", "width_m = 0")
     });
     let phrases = [

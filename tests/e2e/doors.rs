@@ -3,63 +3,23 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use kelir_fixtures as fixtures;
 use kelir_tests::{Server, kelir, kelir_ok, sql};
 use serde_json::Value;
 
-/// Two stills and an animation of one scene; it hides the built-in study by having its name.
-const STUDY: &str = r#"
-title = "Doors"
-question = "Which?"
-seed = 3
-size = [96, 54]
-estimated_minutes = 1
-[texts]
-welcome = "w"
-consent = "c"
-instructions = "i"
-debriefing = "d"
-thanks = "t"
-[conditions.pa]
-technique = "pa"
-[conditions.mc]
-technique = "mc"
-spp = 16
-[[blocks]]
-id = "stills"
-title = "Stills"
-kind = "still"
-conditions = ["pa", "mc"]
-target = "pa"
-pairs = [{ id = "still", scene = "../scenes/lamp.toml" }]
-[[blocks]]
-id = "loop"
-title = "Loop"
-kind = "animation"
-conditions = ["pa", "mc"]
-target = "pa"
-pairs = [{ id = "moving", scene = "../scenes/lamp.toml" }]
-"#;
+/// A still and an animation of one scene; it hides the built-in study by having its name.
+fn study() -> String {
+    let block = |id: &str, keys: &str| {
+        fixtures::block(id, &format!("{keys}\n{}", fixtures::items([id], "../scenes/lamp.toml")))
+    };
+    let conditions = "[conditions.pa]\ntechnique = \"pa\"\n[conditions.mc]\ntechnique = \"mc\"\nspp = 16";
+    let blocks = [block("still", ""), block("moving", "kind = \"animation\"")];
+    fixtures::study(&format!("size = [96, 54]\n{conditions}"), blocks)
+}
 
 /// The lamp comes nearer and stays: frames that show nothing new are among them.
-const SCENE: &str = r#"
-[screen]
-width_m = 1.6
-height_m = 0.9
-albedo = 0.8
-[lamp]
-position_m = [0.0, 0.0, -1.5]
-[[lamp.emitters]]
-name = "bulb"
-shape = "rectangle"
-size_m = [0.1, 0.1]
-radiance = 40.0
-[ambient]
-model = "none"
-[[puppets]]
-image = "../puppets/square.svg"
-height_m = 0.4
-position_m = [0.05, 0.02, -0.2]
-texels = 64
+fn scene() -> String {
+    let timeline = r#"
 [timeline]
 fps = 10
 seconds = 0.5
@@ -69,8 +29,8 @@ target = "lamp.position_m"
 easing = "linear"
 keys = [{ t = 0.0, value = [0.0, 0.0, -1.5] }, { t = 0.3, value = [0.0, 0.0, -0.9] }, { t = 0.5, value = [0.0, 0.0, -0.9] }]
 "#;
-
-const SQUARE: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"><rect x="2" y="2" width="4" height="4"/></svg>"#;
+    format!("{}{timeline}", fixtures::SCENE)
+}
 
 /// Runs `kelir COMMAND SCENE …` on the native code at the study's size; answers what `--stats json` prints.
 fn draw(command: &str, folder: &Path, technique: &str, more: &[&str], output: &Path) -> Value {
@@ -95,13 +55,12 @@ fn frames(folder: &Path) -> (Value, Vec<Vec<u8>>) {
 #[test]
 fn the_command_line_draws_what_a_study_shows() {
     let data = tempfile::tempdir().unwrap();
-    for (path, text) in
-        [("studies/shadow-puppets.toml", STUDY), ("scenes/lamp.toml", SCENE), ("puppets/square.svg", SQUARE)]
-    {
-        let path = data.path().join(path);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
-    }
+    let files = [
+        ("studies/shadow-puppets.toml", &*study()),
+        ("scenes/lamp.toml", &scene()),
+        ("puppets/square.svg", fixtures::SQUARE),
+    ];
+    fixtures::write(data.path(), &files);
     assert!(Server::start(data.path(), true).terminate().success());
     let rows = sql(
         &data.path().join("kelir.sqlite"),
@@ -158,11 +117,8 @@ fn the_command_line_draws_what_a_study_shows() {
 #[test]
 fn an_instant_has_an_exposure_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
-    for (path, text) in [("scenes/lamp.toml", SCENE), ("puppets/square.svg", SQUARE)] {
-        let path = folder.path().join(path);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
-    }
+    let files = [("scenes/lamp.toml", &*scene()), ("puppets/square.svg", fixtures::SQUARE)];
+    fixtures::write(folder.path(), &files);
     let output = folder.path().join("x.png");
     let white = |more: &[&str]| draw("render", folder.path(), "pa", more, &output)["white"].as_f64().unwrap();
     // The brightest pixel is next to the axis: a small lamp's light falls off as 1 / z².

@@ -3,23 +3,18 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use kelir_fixtures as fixtures;
+use kelir_fixtures::block;
 use kelir_tests::{Server, Taking, browser, kelir_ok, root, small_data, sql, table};
 use serde_json::{Value, json};
 
-/// A study file with these blocks.
-pub(crate) fn study(size: &str, blocks: &str) -> String {
-    format!(
-        "title = \"Kinds\"\nquestion = \"Which image is more likely to be real?\"\nseed = 5\nsize = {size}\nestimated_minutes = 1\n\
-         [texts]\nwelcome = \"Welcome\"\nconsent = \"Consent\"\ninstructions = \"Choose.\"\ndebriefing = \"Debriefing\"\nthanks = \"Thank you.\"\n\
-         [conditions.pa]\ntechnique = \"pa\"\n[conditions.mc]\ntechnique = \"mc\"\nspp = 4\n{blocks}"
-    )
-}
-
-/// A block that compares the two conditions; `rest` is what follows its keys.
-pub(crate) fn block(id: &str, rest: &str) -> String {
-    format!(
-        "[[blocks]]\nid = \"{id}\"\ntitle = \"{id}\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\n{rest}\n"
-    )
+/// A study file with these blocks, its reference of few samples.
+pub(crate) fn study(size: &str, blocks: &[String]) -> String {
+    let conditions = "[conditions.pa]\ntechnique = \"pa\"\n[conditions.mc]\ntechnique = \"mc\"\nspp = 4";
+    let head = format!(
+        "question = \"Which image is more likely to be real?\"\nseed = 5\nsize = {size}\n{conditions}"
+    );
+    fixtures::study(&head, blocks)
 }
 
 /// Items with the scenes of `small`, by turns.
@@ -140,7 +135,7 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
         block("slow", &intervals(&["c"], SLOW)),
         block("sides", &items(&["d", "e"])),
     ];
-    std::fs::write(data.path().join("studies/kinds.toml"), study("[320, 180]", &blocks.concat())).unwrap();
+    std::fs::write(data.path().join("studies/kinds.toml"), study("[320, 180]", &blocks)).unwrap();
     let server = Server::start_with(data.path(), "kinds");
     let visits = json!([
         { "name": "ana", "study": "kinds", "viewport": { "width": 1280, "height": 800 }, "input": "keyboard", "shoot": 2,
@@ -260,7 +255,7 @@ fn what_the_export_says_of_a_stimulus_is_how_wide_it_stood_on_any_display() {
             ),
         ),
     ];
-    std::fs::write(data.path().join("studies/sizes.toml"), study("[336, 189]", &blocks.concat())).unwrap();
+    std::fs::write(data.path().join("studies/sizes.toml"), study("[336, 189]", &blocks)).unwrap();
     let server = Server::start_with(data.path(), "sizes");
     // (ratio, window, pressed with); the smallest window has no room for the pictures' own size. Chromium lays out in 64ths of a pixel, which these
     // widths are.

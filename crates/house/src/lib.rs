@@ -27,7 +27,7 @@ mod workbook;
 
 pub use check::{StudyFileError, library_of};
 pub use events::events_table;
-pub use export::{codebook_csv, responses_csv, responses_table, spreadsheet};
+pub use export::{ExportError, codebook_csv, responses_csv, responses_table, spreadsheet};
 pub use library::Library;
 pub use pairs::pairs_csv;
 pub use participants::participants_table;

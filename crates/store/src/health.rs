@@ -12,19 +12,20 @@ impl Store {
     /// # Errors
     /// The trouble there is; [`Trouble::Full`] also where little space is left.
     pub async fn check(&self) -> Result<(), StoreError> {
-        self.place.holds()?;
-        if let Some(free) = self.free_bytes()?
-            && free < LEAST_FREE_BYTES
-        {
-            let message = format!("{} MB of the data folder's disk are free", free >> 20);
-            return Err(StoreError::trouble(Trouble::Full, message));
-        }
+        // First: where the folder is gone, the writer says so.
         self.write(|writer| {
             writer.prepare_cached("INSERT INTO probes DEFAULT VALUES")?.execute([])?;
             writer.prepare_cached("DELETE FROM probes")?.execute([])?;
             Ok(())
         })
-        .await
+        .await?;
+        match self.free_bytes()? {
+            Some(free) if free < LEAST_FREE_BYTES => {
+                let message = format!("{} MB of the data folder's disk are free", free >> 20);
+                Err(StoreError::trouble(Trouble::Full, message))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Bytes that this process may still write on the data folder's disk; `None` where the system does not say.

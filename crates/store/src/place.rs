@@ -1,19 +1,18 @@
 //! Whether the database is where it was opened: what is written to a file that has lost its name ends with the process.
 
 use crate::error::{StoreError, Trouble};
+use std::cell::Cell;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The database's file, by where it is and which file that is.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Place {
     database: PathBuf,
     log: PathBuf,
     file: Option<(u64, u64)>,
     /// Whether there was a log: some file systems can't have one.
-    has_log: Arc<AtomicBool>,
+    has_log: Cell<bool>,
 }
 
 impl Place {
@@ -23,7 +22,7 @@ impl Place {
         let file = which(database).map_err(unknown)?;
         let mut log = database.as_os_str().to_owned();
         log.push("-wal");
-        Ok(Place { database: database.to_owned(), log: log.into(), file, has_log: Arc::default() })
+        Ok(Place { database: database.to_owned(), log: log.into(), file, has_log: Cell::new(false) })
     }
 
     /// # Errors
@@ -43,8 +42,8 @@ impl Place {
     pub(crate) fn holds_what_was_written(&self) -> Result<(), StoreError> {
         self.holds()?;
         match which(&self.log) {
-            Ok(_) => self.has_log.store(true, Ordering::Relaxed),
-            Err(error) if self.has_log.load(Ordering::Relaxed) => return Err(gone(&self.log, error)),
+            Ok(_) => self.has_log.set(true),
+            Err(error) if self.has_log.get() => return Err(gone(&self.log, error)),
             Err(_) => {}
         }
         Ok(())

@@ -24,7 +24,6 @@ pub(crate) const BUSY: Duration = Duration::from_secs(5);
 pub struct Store {
     /// Writers queue here instead of failing as busy, and the chain of answers has one order.
     writer: Writer,
-    pub(crate) place: Place,
     pub(crate) readers: Readers,
     pub(crate) reader: SqlitePool,
     pub(crate) files: Files,
@@ -47,8 +46,8 @@ impl Store {
         let options = SqliteConnectOptions::new().filename(&path).busy_timeout(BUSY).read_only(true);
         let reader = SqlitePoolOptions::new().max_connections(4).connect_with(options).await?;
         let readers = Readers::new(path.clone());
-        let writer = Writer::start(place.clone(), move || connect(&path))?;
-        Ok(Store { writer, place, readers, reader, files, folder: folder.to_owned() })
+        let writer = Writer::start(place, move || connect(&path))?;
+        Ok(Store { writer, readers, reader, files, folder: folder.to_owned() })
     }
 
     /// The data folder.

@@ -111,25 +111,15 @@ mod tests {
 
     use super::*;
     use crate::answers::{Answers, Row};
+    use kelir_fixtures as fixtures;
 
     fn study(screening: &str) -> StudyDefinition {
         let block = |id: &str, catch: &str| {
-            let items: Vec<String> =
-                (0..3).map(|i| format!("{{ id = \"{id}{i}\", scene = \"a.toml\" }}")).collect();
-            format!(
-                "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\n\
-                 items = [{}]\n{catch}\n",
-                items.join(", ")
-            )
+            let items = fixtures::items((0..3).map(|i| format!("{id}{i}")), "a.toml");
+            fixtures::block(id, &format!("{items}{catch}"))
         };
-        let text = format!(
-            "title = \"t\"\nquestion = \"q\"\nseed = 1\nsize = [64, 36]\nestimated_minutes = 1\n\
-             texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
-             conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }} }}\n\
-             screening = {{ {screening} }}\n{}{}",
-            block("main", ""),
-            block("easy", "catch = true")
-        );
+        let blocks = [block("main", ""), block("easy", "catch = true")];
+        let text = fixtures::study(&format!("screening = {{ {screening} }}"), blocks);
         StudyDefinition::parse("s.toml", &text).unwrap()
     }
 

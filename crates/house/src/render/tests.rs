@@ -2,61 +2,25 @@
 
 use super::*;
 use crate::task::tasks;
+use kelir_fixtures as fixtures;
 use kelir_store::sha256_hex;
-use std::path::Path;
+use std::sync::LazyLock;
 
-const STUDY: &str = r#"
-title = "t"
-question = "q"
-seed = 3
-size = [64, 36]
-estimated_minutes = 1
-[texts]
-welcome = "w"
-consent = "c"
-instructions = "i"
-debriefing = "d"
-thanks = "t"
-[conditions.pa]
-technique = "pa"
-[conditions.pcss]
-technique = "pcss"
-bias_m = 0
-[[blocks]]
-id = "stills"
-title = "s"
-kind = "still"
-conditions = ["pa", "pcss"]
-target = "pa"
-pairs = [{ id = "a", scene = "../scenes/lamp.toml" }]
-[[blocks]]
-id = "loop"
-title = "l"
-kind = "animation"
-conditions = ["pa", "pcss"]
-target = "pa"
-pairs = [{ id = "b", scene = "../scenes/lamp.toml" }]
-"#;
+/// A still and a film of one scene under two techniques.
+static STUDY: LazyLock<String> = LazyLock::new(|| {
+    let block = |id: &str, item: &str, keys: &str| {
+        let items = fixtures::items([item], "../scenes/lamp.toml");
+        fixtures::block(id, &format!("conditions = [\"pa\", \"pcss\"]\n{items}{keys}"))
+    };
+    let conditions =
+        "[conditions.pa]\ntechnique = \"pa\"\n[conditions.pcss]\ntechnique = \"pcss\"\nbias_m = 0\n";
+    let blocks = [block("stills", "a", ""), block("loop", "b", "kind = \"animation\"")];
+    fixtures::study(&format!("seed = 3\n{conditions}"), blocks)
+});
 
-const SCENE: &str = r#"
-[screen]
-width_m = 1.6
-height_m = 0.9
-albedo = 0.8
-[lamp]
-position_m = [0.0, 0.0, -1.5]
-[[lamp.emitters]]
-name = "bulb"
-shape = "rectangle"
-size_m = [0.1, 0.1]
-radiance = 40.0
-[ambient]
-model = "none"
-[[puppets]]
-image = "square.svg"
-height_m = 0.4
-position_m = [0.0, 0.0, -0.2]
-texels = 64
+/// The lamp moves.
+static SCENE: LazyLock<String> = LazyLock::new(|| {
+    let timeline = r#"
 [timeline]
 fps = 10
 seconds = 0.2
@@ -65,19 +29,14 @@ loop = true
 target = "lamp.position_m"
 keys = [{ t = 0.0, value = [0.0, 0.0, -1.5] }, { t = 0.1, value = [0.0, 0.0, -1.0] }]
 "#;
-
-fn write(folder: &Path, path: &str, text: &str) {
-    let path = folder.join(path);
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    std::fs::write(path, text).unwrap();
-}
+    format!("{}{timeline}", fixtures::SCENE)
+});
 
 fn library(study: &str) -> (tempfile::TempDir, Library) {
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "studies/s.toml", study);
-    write(folder.path(), "scenes/lamp.toml", SCENE);
-    let square = r#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"><rect x="2" y="2" width="4" height="4"/></svg>"#;
-    write(folder.path(), "scenes/square.svg", square);
+    let files =
+        [("studies/s.toml", study), ("scenes/lamp.toml", &SCENE), ("puppets/square.svg", fixtures::SQUARE)];
+    fixtures::write(folder.path(), &files);
     let library = Library::new(folder.path());
     (folder, library)
 }
@@ -92,7 +51,7 @@ fn identities(study: &str) -> Vec<String> {
 /// Known from the scene's hash alone, the key is that of the job with its scene read.
 #[test]
 fn the_key_is_the_jobs() {
-    let (_folder, library) = library(STUDY);
+    let (_folder, library) = library(&STUDY);
     let study = library.study("studies/s.toml").unwrap();
     let keys: Vec<String> = tasks(&study)
         .iter()
@@ -104,7 +63,7 @@ fn the_key_is_the_jobs() {
         })
         .collect();
     assert!((1..4).all(|k| !keys[..k].contains(&keys[k])), "{keys:?}");
-    let texts = identities(STUDY);
+    let texts = identities(&STUDY);
     let rules = ["still", "still", "timeline", "timeline"].map(|rule| format!(r#""exposure":"{rule}""#));
     for (text, rule) in texts.iter().zip(&rules) {
         assert!(text.starts_with("kelir-job/2\n{\"backend\":\"cpu\"") && text.contains(rule), "{text}");
@@ -117,13 +76,13 @@ fn what_a_study_leaves_out_is_its_default() {
     let written = STUDY
         .replace("technique = \"pa\"", "technique = \"pa\"\nsplit = 1\nweights = \"area\"")
         .replace("bias_m = 0", "bias_m = -0.0\nseed = 1");
-    assert_eq!(identities(&written), identities(STUDY));
+    assert_eq!(identities(&written), identities(&STUDY));
     // Negative controls.
     let other = identities(&STUDY.replace("technique = \"pa\"", "technique = \"pa\"\nsplit = 2"));
-    let same: Vec<bool> = identities(STUDY).iter().zip(&other).map(|(a, b)| a == b).collect();
+    let same: Vec<bool> = identities(&STUDY).iter().zip(&other).map(|(a, b)| a == b).collect();
     assert_eq!(same, [false, true, false, true]);
     let sizes = identities(&STUDY.replace("[64, 36]", "[80, 45]"));
-    assert!(sizes.iter().zip(identities(STUDY)).all(|(a, b)| *a != b));
+    assert!(sizes.iter().zip(identities(&STUDY)).all(|(a, b)| *a != b));
 }
 
 #[test]
@@ -140,13 +99,14 @@ fn a_knob_out_of_its_range_is_found_with_the_study() {
 /// A picture of another scene is not kept under this one's key.
 #[test]
 fn a_scene_that_changes_meanwhile_is_refused() {
-    let (folder, library) = library(STUDY);
+    let (folder, library) = library(&STUDY);
     let study = library.study("studies/s.toml").unwrap();
     let task = tasks(&study).remove(0);
     let maker = RenderMaker::default();
     maker.identity(&task, &library).unwrap();
     assert!(maker.make(&task, &library, &mut |_, _| ()).is_ok());
-    write(folder.path(), "scenes/lamp.toml", &SCENE.replace("radiance = 40.0", "radiance = 41.0"));
+    let brighter = SCENE.replace("radiance = 40.0", "radiance = 41.0");
+    fixtures::write(folder.path(), &[("scenes/lamp.toml", &brighter)]);
     let said = maker.make(&task, &library, &mut |_, _| ()).unwrap_err();
     assert!(said.contains("scenes/lamp.toml") && said.contains("changed"), "{said}");
 }

@@ -1,5 +1,6 @@
 //! Studies with known answers.
 
+use kelir_fixtures as fixtures;
 use kelir_report::{Chain, Excluded, Participants, PooledVersion, Standing, Stimulus, StudyReport};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::{Answers, Participant, Row};
@@ -136,16 +137,15 @@ impl Study {
         let quoted = |text: &str| serde_json::to_string(&plain(text)).unwrap();
         let photo =
             if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
-        let toml = format!(
-            "title = {}\nquestion = {}\nseed = 11\nsize = [64, 36]\nestimated_minutes = 1\n\
-             texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
+        let head = format!(
+            "title = {}\nquestion = {}\nseed = 11\n\
              conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}\n\
-             screening = {{ {} }}\n{}",
+             screening = {{ {} }}",
             quoted(&self.title),
             quoted(&self.question),
-            self.screening,
-            self.blocks.replace("TITLE", &quoted(&self.block_title))
+            self.screening
         );
+        let toml = fixtures::study(&head, [self.blocks.replace("TITLE", &quoted(&self.block_title))]);
         let mut design =
             StudyDefinition::parse("studies/shadows.toml", &toml).unwrap_or_else(|e| panic!("{e}"));
         (design.title, design.question) = (self.title.clone(), self.question.clone());

@@ -68,6 +68,30 @@ async fn every_wrong_field_is_named_with_its_value_and_its_rule() {
     assert!(!answer.text().contains("s3cret") && answer.json()["errors"][1]["pointer"] == "/password");
 }
 
+/// The page says which kind of trial it answers so that its answer is checked early: by the rules of the trial that was shown all the same.
+#[tokio::test(flavor = "multi_thread")]
+async fn an_answer_to_another_kind_of_trial_is_refused() {
+    let client = Client::ready().await;
+    let (path, token, _) = client.join(json!({})).await;
+    let put = async |choice: &str| {
+        let mut body = body_of(choice);
+        body["trial_type"] = json!("two-interval");
+        client.call("PUT", &format!("{path}/trials/0"), &token, &body).await
+    };
+    let answer = put("first").await;
+    assert_shape("another kind's choice", &answer, 422);
+    let expected =
+        json!([{ "pointer": "/choice", "value": "first", "rule": "must be \"left\" or \"right\"" }]);
+    assert_eq!(answer.json()["errors"], expected);
+    let state = client.call("GET", &path, &token, &Value::Null).await.json();
+    assert_eq!(state["next_trial"], 0, "nothing of it was stored");
+    assert_eq!(
+        put("left").await.status,
+        StatusCode::OK,
+        "what is an answer to the trial is one, whatever the page calls it"
+    );
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn bad_parameters_are_named() {
     let client = Client::ready().await;

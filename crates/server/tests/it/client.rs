@@ -4,74 +4,30 @@ use crate::placeholder::Placeholder;
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
+use kelir_fixtures as fixtures;
 use kelir_house::Maker;
 use kelir_server::{Server, ServerConfig, TrustedProxies};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use tempfile::TempDir;
 use tower::ServiceExt;
 
 pub const PASSWORD: &str = "wayang kulit";
 
 /// The study that the tests use: two stills and one animation, small. It hides the built-in study by having its name.
-pub const STUDY: &str = r#"
-title = "Small"
-question = "Which?"
-seed = 3
-size = [64, 36]
-estimated_minutes = 1
-[completion]
-redirect = "https://example.org/?cc=[CODE]&who=[PROLIFIC_PID]"
-[texts]
-welcome = "w"
-consent = "c"
-instructions = "i"
-debriefing = "d"
-thanks = "t"
-[conditions.pa]
-technique = "pa"
-[conditions.mc]
-technique = "mc"
-[[blocks]]
-id = "stills"
+pub static STUDY: LazyLock<String> = LazyLock::new(|| {
+    let head = "title = \"Small\"\nquestion = \"Which?\"\nseed = 3\n[completion]\nredirect = \"https://example.org/?cc=[CODE]&who=[PROLIFIC_PID]\"";
+    let stills = r#"
 title = "Stills"
-kind = "still"
-conditions = ["pa", "mc"]
-target = "pa"
-pairs = [{ id = "a", scene = "../scenes/near.toml" }, { id = "b", scene = "../scenes/far.toml" }]
-[[blocks]]
-id = "loop"
+pairs = [{ id = "a", scene = "../scenes/near.toml" }, { id = "b", scene = "../scenes/far.toml" }]"#;
+    let film = r#"
 title = "Loop"
 kind = "animation"
-conditions = ["pa", "mc"]
-target = "pa"
-pairs = [{ id = "c", scene = "../scenes/dance.toml" }]
-"#;
-
-const SCENE: &str = r#"
-[screen]
-width_m = 1.6
-height_m = 0.9
-albedo = 0.8
-[lamp]
-position_m = [0.0, 0.0, -1.5]
-[[lamp.emitters]]
-name = "bulb"
-shape = "rectangle"
-size_m = [0.1, 0.1]
-radiance = 40.0
-[ambient]
-model = "none"
-[[puppets]]
-image = "../puppets/square.svg"
-height_m = 0.4
-position_m = [0.0, 0.0, -0.2]
-texels = 64
-[exposure]
-white = "auto"
-"#;
+pairs = [{ id = "c", scene = "../scenes/dance.toml" }]"#;
+    fixtures::study(head, [fixtures::block("stills", stills), fixtures::block("loop", film)])
+});
 
 const TIMELINE: &str = r#"
 [timeline]
@@ -84,22 +40,18 @@ easing = "linear"
 keys = [{ t = 0.0, value = [0.0, 0.0, -0.2] }, { t = 0.4, value = [0.1, 0.0, -0.2] }]
 "#;
 
-const SQUARE: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"><rect x="2" y="2" width="4" height="4"/></svg>"#;
-
 /// A data folder with the small study, its three scenes and their puppet.
 pub fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    for (path, text) in [
-        ("studies/shadow-puppets.toml", STUDY.to_owned()),
-        ("scenes/near.toml", SCENE.to_owned()),
-        ("scenes/far.toml", SCENE.replace("-0.2]", "-0.5]")),
-        ("scenes/dance.toml", format!("{SCENE}{TIMELINE}")),
-        ("puppets/square.svg", SQUARE.to_owned()),
-    ] {
-        let path = folder.path().join(path);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
-    }
+    let (near, far) = (fixtures::SCENE, fixtures::SCENE.replace("-0.2]", "-0.5]"));
+    let files = [
+        ("studies/shadow-puppets.toml", &**STUDY),
+        ("scenes/near.toml", near),
+        ("scenes/far.toml", &far),
+        ("scenes/dance.toml", &format!("{near}{TIMELINE}")),
+        ("puppets/square.svg", fixtures::SQUARE),
+    ];
+    fixtures::write(folder.path(), &files);
     folder
 }
 

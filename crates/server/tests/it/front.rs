@@ -55,7 +55,7 @@ async fn a_wrong_study_is_not_served_and_the_others_are() {
     assert_eq!(client.get("/study/draft").await.status, StatusCode::OK, "the page, which says so");
 
     // Mended, it is served at the next start.
-    std::fs::write(client.folder.path().join("studies/draft.toml"), STUDY).unwrap();
+    std::fs::write(client.folder.path().join("studies/draft.toml"), STUDY.as_str()).unwrap();
     std::fs::remove_file(client.folder.path().join("studies/rubbish.toml")).unwrap();
     let again = Server::open(&config(client.folder.path(), client.drawer.clone())).await.unwrap();
     again.make_stimuli(&|_| {}).await.unwrap();

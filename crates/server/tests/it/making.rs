@@ -124,7 +124,7 @@ async fn the_renderer_makes_what_the_study_asks_for() {
     let camera = "[conditions.photo]\ntechnique = \"mc\"\ncamera = { noise = 0.02, seed = 5 }\n[[blocks]]\nid = \"photos\"\n\
         title = \"p\"\nkind = \"still\"\nconditions = [\"photo\", \"pa\"]\ntarget = \"pa\"\n\
         pairs = [{ id = \"d\", scene = \"../scenes/near.toml\" }]\n";
-    let study = format!("{}{camera}", crate::client::STUDY);
+    let study = format!("{}{camera}", *crate::client::STUDY);
     std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();
     let server = Server::open(&config(folder.path(), Arc::new(RenderMaker::default()))).await.unwrap();
     server.make_stimuli(&|_| {}).await.unwrap();

@@ -14,7 +14,8 @@ const SESSIONS: &str = "/api/v1/studies/shadow-puppets/sessions";
 /// A server whose study has these tables too.
 async fn with(tables: &str) -> Client {
     let folder = folder();
-    std::fs::write(folder.path().join("studies/shadow-puppets.toml"), format!("{STUDY}\n{tables}")).unwrap();
+    std::fs::write(folder.path().join("studies/shadow-puppets.toml"), format!("{}\n{tables}", *STUDY))
+        .unwrap();
     let drawer = Arc::new(Placeholder::default());
     let server = Server::open(&config(folder.path(), drawer.clone())).await.unwrap();
     server.make_stimuli(&|_| {}).await.unwrap();

@@ -97,7 +97,7 @@ async fn a_page_is_told_of_each_size_and_nothing_tells_the_conditions_apart_in_a
     let client = Client { server: restarted, ..client };
     assert_eq!(client.get(url).await.status, StatusCode::OK);
     // A study of one size tells of no other.
-    let client = with_study(client, STUDY).await;
+    let client = with_study(client, &STUDY).await;
     let (_, _, state) = client.join(json!({})).await;
     assert_eq!(state["trials"][0]["larger"], json!([]));
 }

@@ -44,7 +44,7 @@ async fn a_version_is_named_by_current_by_its_hash_or_by_the_hashs_beginning() {
 async fn a_list_comes_in_pages() {
     let folder = folder();
     for name in ["a", "b", "c"] {
-        std::fs::write(folder.path().join(format!("studies/{name}.toml")), STUDY).unwrap();
+        std::fs::write(folder.path().join(format!("studies/{name}.toml")), STUDY.as_str()).unwrap();
     }
     let drawer = Arc::<Placeholder>::default();
     let server = Server::open(&config(folder.path(), drawer.clone())).await.unwrap();

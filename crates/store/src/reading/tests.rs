@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::{NewAnswer, NewSession, NextTrials, PlannedSession, PlannedTrial};
+use kelir_fixtures as fixtures;
 use kelir_study::TrialPlan;
 use kelir_study::trials::Placed;
 use std::path::Path;
@@ -10,13 +11,9 @@ use std::time::Duration;
 /// Three items over two conditions, in two intervals where `seed` is even.
 fn study(seed: u64) -> StudyDefinition {
     let trial = if seed.is_multiple_of(2) { "two-interval" } else { "two-alternative" };
-    let text = format!(
-        "title = \"t\"\nquestion = \"q\"\nseed = {seed}\nsize = [64, 36]\nestimated_minutes = 1\n\
-         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
-         conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }} }}\n\
-         [[blocks]]\nid = \"b\"\ntitle = \"t\"\nkind = \"still\"\ntrial = \"{trial}\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\n\
-         items = [{{ id = \"x\", scene = \"a.toml\" }}, {{ id = \"y\", scene = \"a.toml\" }}, {{ id = \"z\", scene = \"a.toml\" }}]\n"
-    );
+    let block =
+        fixtures::block("b", &format!("trial = \"{trial}\"\n{}", fixtures::items(["x", "y", "z"], "a.toml")));
+    let text = fixtures::study(&format!("seed = {seed}"), [block]);
     StudyDefinition::parse("small.toml", &text).unwrap()
 }
 

@@ -2,6 +2,7 @@
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
+use kelir_fixtures as fixtures;
 use kelir_store::{
     Appended, NewAnswer, NewSession, NextTrials, PlannedSession, PlannedTrial, Progress, Session,
     StimulusHashes, Store, StoreError, StudyStimulus,
@@ -16,32 +17,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::TempDir;
 
-const HEAD: &str = r#"
-title = "Small"
-question = "Which?"
-seed = 3
-size = [16, 16]
-estimated_minutes = 1
-texts = { welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }
-conditions = { pa = { technique = "pa" }, mc = { technique = "mc" } }
-"#;
-const STILLS: &str = r#"
-[[blocks]]
-id = "stills"
-title = "Stills"
-kind = "still"
-conditions = ["pa", "mc"]
-target = "pa"
-items = [{ id = "a", scene = "a.toml" }, { id = "b", scene = "b.toml" }, { id = "c", scene = "c.toml" }]
-"#;
 const STAIRCASE: &str = r#"
-[[blocks]]
-id = "levels"
-title = "Levels"
-kind = "still"
 trial = "two-interval"
-conditions = ["pa", "mc"]
-target = "pa"
 items = [{ id = "l0", scene = "a.toml", level = 0 }, { id = "l1", scene = "a.toml", level = 1 }, { id = "l2", scene = "a.toml", level = 2 }]
 [blocks.psychometric]
 function = "logistic"
@@ -59,12 +36,20 @@ pub const IDLE: Duration = Duration::from_secs(60);
 
 /// Three stills, each shown once.
 pub fn study() -> StudyDefinition {
-    StudyDefinition::parse("small.toml", &format!("{HEAD}{STILLS}")).unwrap()
+    of_blocks("small.toml", &[stills()])
 }
 
 /// Three stills, then a staircase of five trials in two intervals.
 pub fn adaptive() -> StudyDefinition {
-    StudyDefinition::parse("adaptive.toml", &format!("{HEAD}{STILLS}{STAIRCASE}")).unwrap()
+    of_blocks("adaptive.toml", &[stills(), fixtures::block("levels", STAIRCASE)])
+}
+
+fn stills() -> String {
+    fixtures::block("stills", &fixtures::items(["a", "b", "c"], "a.toml"))
+}
+
+fn of_blocks(file: &str, blocks: &[String]) -> StudyDefinition {
+    StudyDefinition::parse(file, &fixtures::study("seed = 3\nsize = [16, 16]", blocks)).unwrap()
 }
 
 /// A picture of one shade, packed fast or well.

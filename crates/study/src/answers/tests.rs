@@ -5,6 +5,7 @@ use super::*;
 use crate::analysis::{conditions_scale, summarise};
 use crate::report::Report;
 use crate::screening::{Exclusion, screen};
+use kelir_fixtures as fixtures;
 use kelir_stats::pairwise::{ScaleOptions, Wins, scale};
 use proptest::prelude::*;
 use std::collections::{BTreeSet, HashSet};
@@ -12,26 +13,19 @@ use std::collections::{BTreeSet, HashSet};
 /// Three blocks of 2, 3 and 1 pairs over three conditions, and a catch block of 2; with rules of screening.
 fn study() -> StudyDefinition {
     let block = |id: &str, conditions: &str, target: &str, items: usize, catch: bool| {
-        let items: Vec<String> =
-            (0..items).map(|i| format!("{{ id = \"{id}{i}\", scene = \"a.toml\" }}")).collect();
-        let items = items.join(", ");
-        format!(
-            "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [{conditions}]\n\
-             target = \"{target}\"\ncatch = {catch}\npairs = [{items}]\n"
-        )
+        let items = fixtures::items((0..items).map(|i| format!("{id}{i}")), "a.toml");
+        let keys = format!("conditions = [{conditions}]\ntarget = \"{target}\"\ncatch = {catch}\n{items}");
+        fixtures::block(id, &keys)
     };
-    let text = format!(
-        "title = \"t\"\nquestion = \"q\"\nseed = 1\nsize = [64, 36]\nestimated_minutes = 1\n\
-         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
-         conditions = {{ a = {{ technique = \"pa\" }}, b = {{ technique = \"mc\" }}, c = {{ technique = \"pa\" }} }}\n\
-         screening = {{ min_rt_ms = 200, max_fast_trials = 1, max_failed_catch_trials = 0, straight_lining = true, incomplete = true }}\n\
-         {}{}{}{}",
+    let head = "conditions = { a = { technique = \"pa\" }, b = { technique = \"mc\" }, c = { technique = \"pa\" } }\n\
+        screening = { min_rt_ms = 200, max_fast_trials = 1, max_failed_catch_trials = 0, straight_lining = true, incomplete = true }";
+    let blocks = [
         block("ab", "\"a\", \"b\"", "b", 2, false),
         block("bc", "\"b\", \"c\"", "b", 3, false),
         block("easy", "\"a\", \"c\"", "c", 2, true),
         block("ca", "\"c\", \"a\"", "a", 1, false),
-    );
-    StudyDefinition::parse("s.toml", &text).unwrap()
+    ];
+    StudyDefinition::parse("s.toml", &fixtures::study(head, blocks)).unwrap()
 }
 
 /// A row with texts of its own: participant, pair (two of ten are none of the study's), the target left, left chosen, time.

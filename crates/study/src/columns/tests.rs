@@ -2,24 +2,16 @@
 
 use super::*;
 use crate::plan::TrialPlan;
+use kelir_fixtures as fixtures;
 use std::collections::BTreeSet;
 
 fn study() -> StudyDefinition {
     let block = |id: &str, more: &str| {
-        format!(
-            "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\n{more}\n\
-             items = [{{ id = \"{id}-x\", scene = \"a.toml\" }}]\n"
-        )
+        fixtures::block(id, &format!("{more}\n{}", fixtures::items([format!("{id}-x")], "a.toml")))
     };
-    let text = format!(
-        "title = \"t\"\nquestion = \"q\"\nseed = 1\nsize = [64, 36]\nestimated_minutes = 1\n\
-         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
-         conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }} }}\n{}{}{}",
-        block("sides", ""),
-        block("easy", "catch = true"),
-        block("intervals", "trial = \"two-interval\""),
-    );
-    StudyDefinition::parse("s.toml", &text).unwrap()
+    let blocks =
+        [block("sides", ""), block("easy", "catch = true"), block("intervals", "trial = \"two-interval\"")];
+    StudyDefinition::parse("s.toml", &fixtures::study("", blocks)).unwrap()
 }
 
 #[test]

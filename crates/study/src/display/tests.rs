@@ -1,35 +1,16 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use super::*;
+use kelir_fixtures as fixtures;
 use serde_json::json;
 
-const STUDY: &str = r#"
-title = "t"
-question = "q?"
-seed = 1
-estimated_minutes = 1
-SIZE
-[texts]
-welcome = "w"
-consent = "c"
-instructions = "i"
-debriefing = "d"
-thanks = "t"
-[conditions.pa]
-technique = "pa"
-[conditions.photo]
-files = { a = FILES }
-[[blocks]]
-id = "b"
-title = "t"
-kind = "still"
-conditions = ["pa", "photo"]
-target = "pa"
-items = [{ id = "a", scene = "a.toml" }]
-"#;
-
 fn read_with(size: &str, files: &str) -> Result<StudyDefinition, String> {
-    let text = STUDY.replace("SIZE", size).replace("FILES", files);
+    let photo = format!("[conditions.pa]\ntechnique = \"pa\"\n[conditions.photo]\nfiles = {{ a = {files} }}");
+    let block = fixtures::block(
+        "b",
+        &format!("conditions = [\"pa\", \"photo\"]\n{}", fixtures::items(["a"], "a.toml")),
+    );
+    let text = fixtures::study(&format!("{size}\n{photo}"), [block]);
     StudyDefinition::parse("s.toml", &text).map_err(|errors| errors.to_string())
 }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::definition::{Block, Completion, Condition, Item, Texts};
+use kelir_fixtures as fixtures;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use std::collections::BTreeMap;
@@ -154,27 +155,17 @@ fn sides_are_independent_of_the_pair_over_many_slots() {
 
 /// A fixed block, an adaptive one over seven levels of two items each, and a fixed one again.
 fn growing(procedure: &str, seed: u64) -> StudyDefinition {
-    let fixed = |id: &str| {
-        let items: Vec<String> =
-            (0..3).map(|i| format!("{{ id = \"{id}{i}\", scene = \"a.toml\" }}")).collect();
-        format!(
-            "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\nitems = [{}]\n",
-            items.join(", ")
-        )
-    };
+    let fixed =
+        |id: &str| fixtures::block(id, &fixtures::items((0..3).map(|i| format!("{id}{i}")), "a.toml"));
     let levels: Vec<String> =
         (0..14).map(|i| format!("{{ id = \"l{i}\", scene = \"a.toml\", level = {} }}", i / 2)).collect();
-    let text = format!(
-        "title = \"t\"\nquestion = \"q\"\nseed = {seed}\nsize = [64, 36]\nestimated_minutes = 1\n\
-         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
-         conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }} }}\n{}\
-         [[blocks]]\nid = \"levels\"\ntitle = \"t\"\nkind = \"still\"\ntrial = \"two-interval\"\nconditions = [\"pa\", \"mc\"]\n\
-         target = \"pa\"\nitems = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n\
-         [blocks.adaptive]\n{procedure}\n{}",
-        fixed("before"),
-        levels.join(", "),
-        fixed("after"),
+    let growing = format!(
+        "trial = \"two-interval\"\nitems = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n\
+         [blocks.adaptive]\n{procedure}",
+        levels.join(", ")
     );
+    let blocks = [fixed("before"), fixtures::block("levels", &growing), fixed("after")];
+    let text = fixtures::study(&format!("seed = {seed}"), blocks);
     StudyDefinition::parse("s.toml", &text).unwrap_or_else(|errors| panic!("{errors}"))
 }
 

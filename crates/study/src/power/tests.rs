@@ -4,6 +4,7 @@ use super::findings::PER_TRIAL;
 use super::*;
 use crate::answers::blocks;
 use crate::definition::StudyDefinition;
+use kelir_fixtures as fixtures;
 use kelir_reader::Problem;
 
 /// `blocks` of (conditions, pairs, rest of the block) with rules of screening.
@@ -15,23 +16,18 @@ fn study(screening: &str, blocks: &[(&str, &str, usize, &str)]) -> StudyDefiniti
             (0..*items).map(|i| format!("{{ id = \"{id}-{i}\", scene = \"a.toml\"{} }}", level(i))).collect();
         let (target, _) = conditions.split_once(' ').unwrap();
         let conditions = conditions.replace(' ', "\", \"");
-        format!(
-            "[[blocks]]\nid = \"{id}\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"{conditions}\"]\n\
-             target = \"{target}\"\npairs = [{}]\n{rest}\n",
-            items.join(", ")
-        )
+        let items = items.join(", ");
+        let keys =
+            format!("conditions = [\"{conditions}\"]\ntarget = \"{target}\"\nitems = [{items}]\n{rest}");
+        fixtures::block(id, &keys)
     };
     let mut names: Vec<&str> = blocks.iter().flat_map(|b| b.1.split(' ')).collect();
     names.sort_unstable();
     names.dedup();
     let conditions: Vec<String> = names.iter().map(|n| format!("{n} = {{ technique = \"pa\" }}")).collect();
-    let text = format!(
-        "title = \"t\"\nquestion = \"q\"\nseed = 5\nsize = [64, 36]\nestimated_minutes = 1\n\
-         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
-         conditions = {{ {} }}\nscreening = {{ {screening} }}\n{}",
-        conditions.join(", "),
-        blocks.iter().map(block).collect::<String>()
-    );
+    let conditions = format!("conditions = {{ {} }}", conditions.join(", "));
+    let head = format!("seed = 5\n{conditions}\nscreening = {{ {screening} }}");
+    let text = fixtures::study(&head, blocks.iter().map(block).collect::<Vec<_>>());
     StudyDefinition::parse("s.toml", &text).unwrap()
 }
 

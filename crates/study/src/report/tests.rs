@@ -2,41 +2,24 @@
 
 use super::*;
 use crate::answers::{Answers, Row};
+use kelir_fixtures as fixtures;
 
-const STUDY: &str = r#"
-title = "t"
-question = "Which?"
-seed = 11
-size = [64, 36]
-estimated_minutes = 1
-texts = { welcome = "w", consent = "c", instructions = "i", debriefing = "d", thanks = "t" }
-conditions = { pa = { technique = "pa" }, mc = { technique = "mc" }, photo = { technique = "mc" } }
-[[blocks]]
-id = "stills"
-title = "Stills"
-kind = "still"
-conditions = ["pa", "mc"]
-target = "pa"
-pairs = [{ id = "a", scene = "a.toml" }, { id = "b", scene = "a.toml" }]
-[[blocks]]
-id = "photos"
-title = "Photos"
-kind = "still"
-conditions = ["photo", "pa"]
-target = "pa"
-pairs = [{ id = "c", scene = "a.toml" }]
-[[blocks]]
-id = "easy"
-title = "Catch"
-kind = "still"
-conditions = ["pa", "mc"]
-target = "pa"
-catch = true
-pairs = [{ id = "d", scene = "a.toml" }]
-"#;
+fn text() -> String {
+    let block = |id: &str, keys: &str, items: &[&str]| {
+        fixtures::block(id, &format!("{keys}\n{}", fixtures::items(items, "a.toml")))
+    };
+    let blocks = [
+        block("stills", "title = \"Stills\"", &["a", "b"]),
+        block("photos", "title = \"Photos\"\nconditions = [\"photo\", \"pa\"]", &["c"]),
+        block("easy", "title = \"Catch\"\ncatch = true", &["d"]),
+    ];
+    let conditions =
+        "{ pa = { technique = \"pa\" }, mc = { technique = \"mc\" }, photo = { technique = \"mc\" } }";
+    fixtures::study(&format!("question = \"Which?\"\nseed = 11\nconditions = {conditions}"), blocks)
+}
 
 fn study() -> StudyDefinition {
-    StudyDefinition::parse("s.toml", STUDY).unwrap()
+    StudyDefinition::parse("s.toml", &text()).unwrap()
 }
 
 const PAIRS: [(&str, &str); 4] = [("a", "mc"), ("b", "mc"), ("c", "photo"), ("d", "mc")];
@@ -151,14 +134,14 @@ fn methods_say_how_each_kind_of_trial_shows_its_pictures() {
         let layouts: Vec<String> = report.blocks.iter().map(|block| block.summary.layout.clone()).collect();
         (report.methods.join(" "), layouts)
     };
-    let (at_once, layouts) = said(STUDY);
+    let (at_once, layouts) = said(&text());
     assert!(at_once.contains("The two were shown beside each other, or below"), "{at_once}");
     assert!(!at_once.contains("fixation"), "{at_once}");
     assert_eq!(layouts, ["side by side", "side by side"]);
     // One of three blocks asks otherwise: each sentence says of which it speaks.
     let intervals =
         "id = \"photos\"\ntrial = \"two-interval\"\ntrial_settings = { first_ms = 250, mask_ms = 0 }";
-    let (both, layouts) = said(&STUDY.replace("id = \"photos\"", intervals));
+    let (both, layouts) = said(&text().replace("id = \"photos\"", intervals));
     let sentence = "In the block \"Photos\" the two were shown one after the other (two-interval forced choice): a fixation cross for 500 ms, the \
                     first picture for 250 ms, a mask for 0 ms and the second picture for 500 ms";
     assert!(both.contains(sentence), "{both}");
@@ -175,10 +158,10 @@ fn methods_say_which_procedure_led_a_block_and_cite_it() {
         (1..=3).map(|i| format!("{{ id = \"c{i}\", scene = \"a.toml\", level = {i} }}")).collect();
     let led = |procedure: &str| {
         let block = format!(
-            "pairs = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n[blocks.adaptive]\n{procedure}",
+            "items = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n[blocks.adaptive]\n{procedure}",
             items.join(", ")
         );
-        let text = STUDY.replace("pairs = [{ id = \"c\", scene = \"a.toml\" }]", &block);
+        let text = text().replace("items = [{ id = \"c\", scene = \"a.toml\" }]", &block);
         let report = Report::of(&StudyDefinition::parse("s.toml", &text).unwrap(), &[]);
         (report.methods.join(" "), report.references.join(" "))
     };

@@ -4,17 +4,12 @@ use super::*;
 use crate::answers::{Answers, Row};
 use crate::definition::StudyDefinition;
 use crate::screening::Exclusion;
+use kelir_fixtures as fixtures;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
 fn study(extra: &str) -> StudyDefinition {
-    let text = format!(
-        "title = \"t\"\nquestion = \"q\"\nseed = 1\nsize = [64, 36]\nestimated_minutes = 1\n{extra}\n\
-         [texts]\nwelcome = \"w\"\nconsent = \"c\"\ninstructions = \"i\"\ndebriefing = \"d\"\nthanks = \"t\"\n\
-         [conditions.pa]\ntechnique = \"pa\"\n[conditions.mc]\ntechnique = \"mc\"\n\
-         [[blocks]]\nid = \"b\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"pa\", \"mc\"]\ntarget = \"pa\"\n\
-         items = [{{ id = \"x\", scene = \"a.toml\" }}, {{ id = \"y\", scene = \"a.toml\" }}]\n"
-    );
+    let text = fixtures::study(extra, [fixtures::block("b", &fixtures::items(["x", "y"], "a.toml"))]);
     StudyDefinition::parse("s.toml", &text).unwrap()
 }
 

@@ -3,6 +3,7 @@
 use crate::answers::{Answers, Row};
 use crate::definition::StudyDefinition;
 use crate::report::{PsychometricReport, Report};
+use kelir_fixtures as fixtures;
 use kelir_stats::random::Random;
 
 /// A block of seven or fewer levels whose psychometric function is described by `function`.
@@ -11,14 +12,12 @@ fn study(function: &str, levels: &[f64]) -> StudyDefinition {
         .zip(levels)
         .map(|(i, level): (u32, _)| format!("{{ id = \"p{i}\", scene = \"a.toml\", level = {level:?} }}"))
         .collect();
-    let text = format!(
-        "title = \"t\"\nquestion = \"q\"\nseed = 5\nsize = [64, 36]\nestimated_minutes = 1\n\
-         texts = {{ welcome = \"w\", consent = \"c\", instructions = \"i\", debriefing = \"d\", thanks = \"t\" }}\n\
-         conditions = {{ full = {{ technique = \"pa\" }}, few = {{ technique = \"mc\" }} }}\n\
-         [[blocks]]\nid = \"levels\"\ntitle = \"t\"\nkind = \"still\"\nconditions = [\"full\", \"few\"]\n\
-         target = \"full\"\npairs = [{}]\n[blocks.psychometric]\n{function}\n",
+    let conditions = "conditions = { full = { technique = \"pa\" }, few = { technique = \"mc\" } }";
+    let keys = format!(
+        "conditions = [\"full\", \"few\"]\ntarget = \"full\"\nitems = [{}]\n[blocks.psychometric]\n{function}",
         items.join(", ")
     );
+    let text = fixtures::study(&format!("seed = 5\n{conditions}"), [fixtures::block("levels", &keys)]);
     StudyDefinition::parse("levels.toml", &text).unwrap()
 }
 
