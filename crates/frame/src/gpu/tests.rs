@@ -24,7 +24,7 @@ fn a_failed_device_is_an_error() {
 }
 
 #[path = "../no_gpu.rs"]
-#[allow(dead_code, reason = "only the choice is tried")]
+#[allow(dead_code, unreachable_pub, reason = "only the choice is tried")]
 mod absent;
 
 /// A kelir without its GPU backend draws natively, and says what builds one where the GPU is asked for.

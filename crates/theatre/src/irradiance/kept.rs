@@ -25,7 +25,7 @@ struct UnitImage {
 
 impl UnitImages {
     /// Brings the images up to date and forgets what is no longer used; `means` asks for [`UnitImages::means`].
-    pub fn update(&mut self, theatre: &Theatre, size: [usize; 2], means: bool) {
+    pub(crate) fn update(&mut self, theatre: &Theatre, size: [usize; 2], means: bool) {
         let lamp_m = theatre.lamp.position_m;
         let screen = &theatre.screen;
         let old = std::mem::take(&mut self.kept);
@@ -45,12 +45,12 @@ impl UnitImages {
     }
 
     /// At pixel centres, one image an emitter.
-    pub fn centres(&self) -> Vec<&[f64]> {
+    pub(crate) fn centres(&self) -> Vec<&[f64]> {
         self.kept.iter().map(|image| image.centres.as_slice()).collect()
     }
 
     /// Means over pixels, one image an emitter; values at the centres where means were not asked for.
-    pub fn means(&self) -> Vec<&[f64]> {
+    pub(crate) fn means(&self) -> Vec<&[f64]> {
         self.kept.iter().map(|image| image.means.as_ref().unwrap_or(&image.centres).as_slice()).collect()
     }
 }

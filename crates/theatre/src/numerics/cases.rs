@@ -108,7 +108,7 @@ impl Case {
 }
 
 /// A square grey mask of `side` texels in 8 or 16 bits.
-pub fn mask(pattern: Pattern, side: usize, bits: u32) -> Mask {
+pub(super) fn mask(pattern: Pattern, side: usize, bits: u32) -> Mask {
     let n = side as f64;
     let figure = |x: usize, y: usize| {
         let (u, v) = (x as f64 / n - 0.45, y as f64 / n - 0.5);
@@ -135,7 +135,7 @@ pub fn mask(pattern: Pattern, side: usize, bits: u32) -> Mask {
 }
 
 /// A case with nothing stressed.
-pub fn plain() -> Case {
+pub(super) fn plain() -> Case {
     Case::new("plain")
 }
 

@@ -10,7 +10,7 @@ use crate::project::window::Windows;
 use crate::project::{ShadowBox, pixel_m};
 
 /// Sum of the opacity codes over columns `x` and rows `y` of texels, as well as a table knows it.
-pub trait Blocks {
+pub(super) trait Blocks {
     /// Columns [from, to) × rows [from, to) inside the grid.
     fn sum(&self, x: [usize; 2], y: [usize; 2]) -> f64;
 }
@@ -24,7 +24,7 @@ impl Blocks for Table {
 /// A summed-area table in f32, as graphics hardware sums it; with `bias` the mean is subtracted from every texel first (Hensley et al.,
 /// "Fast summed-area table generation and its applications", 2005), so that sums stay near zero.
 #[derive(Debug)]
-pub struct Float {
+pub(super) struct Float {
     width: usize,
     bias: f64,
     sums: Vec<f32>,
@@ -32,7 +32,7 @@ pub struct Float {
 
 impl Float {
     /// The table of a grey mask.
-    pub fn new(mask: &Mask, biased: bool) -> Self {
+    pub(super) fn new(mask: &Mask, biased: bool) -> Self {
         let (w, h) = (mask.width, mask.height);
         let max = f64::from(mask.max_code());
         let code = |x: usize, y: usize| max * (1.0 - mask.transmittance(0, x, y));
@@ -80,7 +80,7 @@ fn ranges(windows: &Windows, i: usize, size: usize) -> Ranges {
 
 /// A box, cut exactly, ready to be summed from any table.
 #[derive(Clone, Debug)]
-pub struct Footprint {
+pub(super) struct Footprint {
     x: Ranges,
     y: Ranges,
     /// Texels of the whole box, also where it hangs over the grid's edge.
@@ -89,12 +89,12 @@ pub struct Footprint {
 
 impl Footprint {
     /// Of the pixel at column `i` and row `j` of upright look-ups.
-    pub fn upright(x: &Windows, y: &Windows, [i, j]: [usize; 2], [w, h]: [usize; 2]) -> Self {
+    pub(super) fn upright(x: &Windows, y: &Windows, [i, j]: [usize; 2], [w, h]: [usize; 2]) -> Self {
         Self { x: ranges(x, i, w), y: ranges(y, j, h), area: x.width * y.width }
     }
 
     /// Of a box given by its centre and full sides in texels.
-    pub fn around(centre: DVec2, sides: DVec2, [w, h]: [usize; 2]) -> Self {
+    pub(super) fn around(centre: DVec2, sides: DVec2, [w, h]: [usize; 2]) -> Self {
         let cut = |centre: f64, width: f64, size: usize| {
             let (parts, count) = parts(centre, width, size);
             parts[..count].to_vec()
@@ -103,7 +103,7 @@ impl Footprint {
     }
 
     /// 1 − the mean opacity, from integer (or float) differences of the table first, weights afterwards.
-    pub fn visibility(&self, table: &dyn Blocks, max_code: u32) -> f64 {
+    pub(super) fn visibility(&self, table: &dyn Blocks, max_code: u32) -> f64 {
         let row = |(y, wy): &([usize; 2], f64)| {
             self.x.iter().map(|(x, wx)| wx * wy * table.sum(*x, *y)).sum::<f64>()
         };
@@ -113,7 +113,7 @@ impl Footprint {
 
 /// Box corners in f32, table entries blended in f32: what a shader does that interpolates the table at the box's four corners.
 #[derive(Debug)]
-pub struct Corners {
+pub(super) struct Corners {
     scale: [f32; 2],
     offset: [f32; 2],
     half: [f32; 2],
@@ -124,7 +124,7 @@ pub struct Corners {
 
 impl Corners {
     /// For one upright plane and an emitter of full sides `size_m`.
-    pub fn new(theatre: &Theatre, plane: &Plane, view: &View, size_m: [f64; 2]) -> Self {
+    pub(super) fn new(theatre: &Theatre, plane: &Plane, view: &View, size_m: [f64; 2]) -> Self {
         let map = ShadowBox::new(plane, theatre.lamp.position_m);
         let at = |i: f64, j: f64| map.centre(pixel_m(&theatre.screen, view.size, i, j));
         let pixel = match view.pixel {
@@ -143,7 +143,7 @@ impl Corners {
     }
 
     /// 1 − the mean opacity at pixel (i, j).
-    pub fn visibility(&self, table: &Table, [i, j]: [usize; 2]) -> f64 {
+    pub(super) fn visibility(&self, table: &Table, [i, j]: [usize; 2]) -> f64 {
         let p = [
             ((i as f32 + 0.5) / self.size[0] as f32 - 0.5) * self.screen[0],
             (0.5 - (j as f32 + 0.5) / self.size[1] as f32) * self.screen[1],

@@ -4,7 +4,7 @@ use kelir_scene::{Mask, Texels};
 
 /// A mask with a border of one clear texel (whatever is outside the grid lets all light through), and a
 /// summed-area table of its changes.
-pub struct Padded {
+pub(crate) struct Padded {
     /// Texels a padded row.
     pub stride: usize,
     /// Padded rows.
@@ -21,7 +21,7 @@ pub struct Padded {
 
 /// Texels `first..=last` of one axis in padded coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Range {
+pub(crate) struct Range {
     /// First texel.
     pub first: u32,
     /// Last texel.
@@ -30,7 +30,7 @@ pub struct Range {
 
 impl Padded {
     /// Pads `mask` and counts its changes.
-    pub fn new(mask: &Mask) -> Self {
+    pub(crate) fn new(mask: &Mask) -> Self {
         let (w, h) = (mask.width, mask.height);
         let (stride, rows) = (w + 2, h + 2);
         let max_code = mask.max_code();
@@ -72,7 +72,7 @@ impl Padded {
     /// Whether all texels of the box are equal in every channel; may say no of a constant box whose left or upper
     /// neighbour differs, never yes of one that varies.
     #[inline]
-    pub fn is_constant(&self, x: Range, y: Range) -> bool {
+    pub(crate) fn is_constant(&self, x: Range, y: Range) -> bool {
         let line = self.stride + 1;
         let (top, bottom) = (y.first as usize * line, (y.last as usize + 1) * line);
         let (left, right) = (x.first as usize, x.last as usize + 1);
@@ -82,7 +82,7 @@ impl Padded {
 
     /// The code of channel `c` (grey masks answer for all) at a padded texel.
     #[inline]
-    pub fn code(&self, c: usize, x: u32, y: u32) -> u16 {
+    pub(crate) fn code(&self, c: usize, x: u32, y: u32) -> u16 {
         self.codes[((c % self.channels) * self.rows + y as usize) * self.stride + x as usize]
     }
 }

@@ -15,7 +15,7 @@ use crate::albedo::PixelAlbedo;
 use crate::ambient;
 
 /// Everything that a row needs.
-pub struct Estimator<'a> {
+pub(super) struct Estimator<'a> {
     pub theatre: &'a Theatre,
     pub plan: &'a Plan,
     pub masks: &'a [Arc<Padded>],
@@ -37,7 +37,7 @@ pub struct Estimator<'a> {
 /// that it deviates from.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct Job {
+pub(crate) struct Job {
     pub x: u32,
     pub y: u32,
     pub emitter: u32,
@@ -53,7 +53,7 @@ type Source<'a> = &'a mut dyn FnMut(&Job) -> [[f64; REPLICATES]; 3];
 
 /// One finished row.
 #[derive(Default)]
-pub struct Row {
+pub(crate) struct Row {
     /// Planes of `width` values: radiance R, G, B; and with layers SE R, G, B, then visibilities.
     pub values: Vec<f32>,
     /// (Pixel, emitter, planes) estimates that were sampled.
@@ -105,7 +105,7 @@ impl Estimate {
 
 impl Estimator<'_> {
     /// The given rows, on all cores; the result does not depend on how many there are.
-    pub fn rows(&self, rows: &[usize]) -> Vec<Row> {
+    pub(super) fn rows(&self, rows: &[usize]) -> Vec<Row> {
         let row = |j: &usize| {
             let row = self.row(*j, &mut |job| self.native(job));
             self.meter.add(1);
@@ -116,7 +116,7 @@ impl Estimator<'_> {
 
     /// The given rows with sums from `draw`, which is handed the jobs of many rows at a time: `channels * REPLICATES`
     /// sums each.
-    pub fn rows_by(
+    pub(super) fn rows_by(
         &self,
         rows: &[usize],
         mut draw: impl FnMut(&[Job]) -> Result<Vec<f32>, RenderError>,

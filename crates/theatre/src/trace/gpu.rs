@@ -13,7 +13,7 @@ use super::plan::{Axis, Plan, PlaneMap, Shape};
 use super::sobol::{self, Points, REPLICATES};
 
 /// The shader's text.
-pub const WGSL: &str = include_str!("trace.wgsl");
+pub(crate) const WGSL: &str = include_str!("trace.wgsl");
 
 /// Invocations a workgroup, as in the shader.
 pub(super) const WORKGROUP: u32 = 64;
@@ -93,7 +93,7 @@ impl From<&Axis> for GpuAxis {
 }
 
 /// Compiled once; keeps the masks' texture while the masks stay, and the buffers that sums are read through.
-pub struct Sampler {
+pub(crate) struct Sampler {
     pub gpu: Gpu,
     pipeline: wgpu::ComputePipeline,
     masks: Option<(Vec<u64>, wgpu::Texture)>,
@@ -102,7 +102,7 @@ pub struct Sampler {
 }
 
 /// What one frame's jobs share on the device.
-pub struct Scene {
+pub(crate) struct Scene {
     plan: Params,
     channels: usize,
     emitters: wgpu::Buffer,
@@ -113,7 +113,7 @@ pub struct Scene {
 
 impl Sampler {
     /// Compiles `wgsl`, which is [`WGSL`] but for tests that need a wrong one.
-    pub fn new(gpu: Gpu, wgsl: &str) -> Result<Self, RenderError> {
+    pub(crate) fn new(gpu: Gpu, wgsl: &str) -> Result<Self, RenderError> {
         let module = gpu.module("trace.wgsl", wgsl);
         let pipeline = gpu.pipeline(&module, "sample");
         gpu.check()?;
@@ -121,7 +121,7 @@ impl Sampler {
     }
 
     /// Uploads what changed; `ids` are the masks' ids.
-    pub fn prepare(
+    pub(crate) fn prepare(
         &mut self,
         plan: &Plan,
         ids: &[u64],
@@ -254,7 +254,7 @@ impl Sampler {
     }
 
     /// The sums of every job: `channels * REPLICATES` a job, channel by channel.
-    pub fn run(&mut self, plan: &Plan, scene: &Scene, jobs: &[Job]) -> Result<Vec<f32>, RenderError> {
+    pub(crate) fn run(&mut self, plan: &Plan, scene: &Scene, jobs: &[Job]) -> Result<Vec<f32>, RenderError> {
         let per_job = scene.channels * REPLICATES;
         let mut sums = Vec::with_capacity(jobs.len() * per_job);
         for jobs in jobs.chunks(JOBS) {

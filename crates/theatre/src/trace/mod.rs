@@ -48,14 +48,14 @@ pub(crate) struct Tracer {
 
 impl Tracer {
     /// On `backend`. Errors: no adapter where there must be one.
-    pub fn new(backend: Backend) -> Result<Self, RenderError> {
+    pub(crate) fn new(backend: Backend) -> Result<Self, RenderError> {
         let gpu =
             kelir_frame::gpu::choose(backend)?.map(|gpu| gpu::Sampler::new(gpu, gpu::WGSL)).transpose()?;
         Ok(Self { masks: HashMap::new(), lit: UnitImages::default(), gpu, meter: Meter::default() })
     }
 
     /// Begins a frame, for which masks and E⁰ are brought up to date; `visibilities` asks for more than its radiance.
-    pub fn trace<'a>(
+    pub(crate) fn trace<'a>(
         &'a mut self,
         theatre: &'a Theatre,
         view: &'a View,
@@ -81,12 +81,12 @@ impl Tracer {
     }
 
     /// As [`kelir_frame::Renderer::class`].
-    pub fn class(&self) -> String {
+    pub(crate) fn class(&self) -> String {
         self.gpu.as_ref().map_or("cpu".into(), |sampler| sampler.gpu.class())
     }
 
     /// As [`kelir_frame::Renderer::adapter`].
-    pub fn adapter(&self) -> String {
+    pub(crate) fn adapter(&self) -> String {
         match &self.gpu {
             Some(sampler) => sampler.gpu.adapter(),
             None => format!("native {} threads {}", rayon::current_num_threads(), Isa::detect().name()),
@@ -110,7 +110,7 @@ pub(crate) struct Trace<'a> {
 
 impl Trace<'_> {
     /// The given rows with these points.
-    pub fn rows(&mut self, points: &Points, rows: &[usize]) -> Result<Vec<Row>, RenderError> {
+    pub(crate) fn rows(&mut self, points: &Points, rows: &[usize]) -> Result<Vec<Row>, RenderError> {
         let estimator = Estimator {
             theatre: self.theatre,
             plan: &self.plan,
@@ -131,13 +131,13 @@ impl Trace<'_> {
     }
 
     /// All rows, counted on the meter.
-    pub fn all(&mut self, points: &Points) -> Result<Vec<Row>, RenderError> {
+    pub(crate) fn all(&mut self, points: &Points) -> Result<Vec<Row>, RenderError> {
         self.meter.begin(self.view.size[1]);
         self.rows(points, &(0..self.view.size[1]).collect::<Vec<_>>())
     }
 
     /// Counts what tracing `rows` with so many points a lane took.
-    pub fn count(&self, rows: &[Row], samples: usize, stats: &mut Stats) {
+    pub(crate) fn count(&self, rows: &[Row], samples: usize, stats: &mut Stats) {
         let spp = (samples * REPLICATES) as u64;
         let jobs = rows.iter().map(|r| r.jobs).sum::<u64>();
         let pixels = (self.view.size[0] * self.view.size[1]) as u64;
@@ -156,7 +156,7 @@ impl Trace<'_> {
     }
 
     /// The image; its standard errors are the spread of the lanes.
-    pub fn frame(&self, rows: &[Row], stats: Stats) -> Frame {
+    pub(crate) fn frame(&self, rows: &[Row], stats: Stats) -> Frame {
         let [width, height] = self.view.size;
         let count = rows.first().map_or(0, |row| row.values.len() / width);
         let mut planes: Vec<Vec<f32>> = (0..count).map(|_| Vec::with_capacity(width * height)).collect();

@@ -11,12 +11,12 @@ use super::tilted::{Seen, Tilted};
 pub(super) const FLUSH: usize = 32;
 
 /// Sums of one pixel's and one emitter's replicates, per channel.
-pub type Sums<const C: usize> = [[f64; REPLICATES]; C];
+pub(super) type Sums<const C: usize> = [[f64; REPLICATES]; C];
 
 type Lanes = [f32; REPLICATES];
 
 /// What a pixel's sums need.
-pub struct Sampler<'a> {
+pub(super) struct Sampler<'a> {
     /// The scene.
     pub plan: &'a Plan,
     /// The planes' masks.
@@ -32,7 +32,7 @@ impl Sampler<'_> {
     /// and `v0` are products of codes.
     ///
     /// The arithmetic is the same on every machine (no fused operations, a fixed order), only its width differs.
-    pub fn sums<const C: usize>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
+    pub(super) fn sums<const C: usize>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
         #[cfg(target_arch = "x86_64")]
         match Isa::detect() {
             // SAFETY: detected on this machine.

@@ -16,7 +16,7 @@ use crate::project::{self, sides_m};
 /// line nearest the box's centre, so that the offset is small wherever the result matters and f32 resolves even a box of
 /// 1e-6 texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub(crate) struct Axis {
     /// The box's centre relative to the anchor, texels.
     pub offset: f32,
     /// Smallest value of the sum before the floor: the clear texel before the grid.
@@ -30,7 +30,7 @@ pub struct Axis {
 }
 
 /// The map to one plane's texels as one source lights it.
-pub enum PlaneMap {
+pub(crate) enum PlaneMap {
     /// Parallel to the screen: x depends on the column alone, y on the row alone.
     Parallel(Parallel),
     /// Tilted: a perspective map of its own for every pixel.
@@ -38,7 +38,7 @@ pub enum PlaneMap {
 }
 
 /// The affine map of a plane parallel to the screen.
-pub struct Parallel {
+pub(crate) struct Parallel {
     /// One a column of pixels.
     pub columns: Vec<Axis>,
     /// One a row of pixels.
@@ -51,7 +51,7 @@ pub struct Parallel {
 
 /// What the square of u is mapped to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub(crate) enum Shape {
     /// Itself.
     Rectangle,
     /// The disk in it, keeping areas' ratios.
@@ -61,7 +61,7 @@ pub enum Shape {
 }
 
 /// One source's sampling.
-pub struct EmitterPlan {
+pub(crate) struct EmitterPlan {
     /// Its outline.
     pub shape: Shape,
     /// One a plane, in the theatre's order.
@@ -80,7 +80,7 @@ pub struct EmitterPlan {
 }
 
 /// Everything but the points.
-pub struct Plan {
+pub(crate) struct Plan {
     /// Pixels [width, height].
     pub size: [usize; 2],
     /// Whether points also spread over the pixel's area.
@@ -95,7 +95,7 @@ pub struct Plan {
 
 impl Plan {
     /// Errors: a size that does not fit the screen.
-    pub fn new(
+    pub(crate) fn new(
         theatre: &Theatre,
         view: &View,
         masks: &[impl AsRef<Padded>],
@@ -128,7 +128,7 @@ impl Plan {
 impl PlaneMap {
     /// Every padded texel that samples of pixel (i, j) can fall on.
     #[inline]
-    pub fn range(&self, i: usize, j: usize) -> (Range, Range) {
+    pub(crate) fn range(&self, i: usize, j: usize) -> (Range, Range) {
         match self {
             Self::Parallel(map) => (map.columns[i].range, map.rows[j].range),
             Self::Tilted(map) => map.range(i, j),
@@ -137,7 +137,7 @@ impl PlaneMap {
 }
 
 /// Sides of a pixel in metres, 0 where only its centre counts.
-pub fn pixel_sides(screen: &Screen, view: &View) -> [f64; 2] {
+pub(super) fn pixel_sides(screen: &Screen, view: &View) -> [f64; 2] {
     match view.pixel {
         Pixel::Area => [screen.width_m / view.size[0] as f64, screen.height_m / view.size[1] as f64],
         Pixel::Centre => [0.0; 2],
@@ -230,7 +230,7 @@ fn axes(
 
 impl Axis {
     /// The axis of a box `from..to` around `centre` (texels) on a grid of `texels`.
-    pub fn new(centre: f64, from: f64, to: f64, texels: usize) -> Self {
+    pub(crate) fn new(centre: f64, from: f64, to: f64, texels: usize) -> Self {
         let anchor = centre.round().clamp(0.0, texels as f64);
         let offset = centre - anchor;
         // What f32 may add to the sum: a few roundings of its largest term.

@@ -18,7 +18,7 @@ use super::plan::{Axis, pixel_sides};
 use crate::project;
 
 /// One tilted plane as one source lights it.
-pub struct Tilted {
+pub(crate) struct Tilted {
     /// Texels per metre along the grid's x, as a vector in space (z is not needed).
     pub right: [f32; 2],
     /// Texels per metre along the grid's y, downwards.
@@ -50,7 +50,7 @@ struct Exact {
 
 /// What one pixel adds.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub(crate) struct Seen {
     /// Along the grid's x.
     pub x: Axis,
     /// Along the grid's y.
@@ -67,7 +67,7 @@ pub struct Seen {
 
 impl Tilted {
     /// `size_m` are the emitter's full sides, `None` for the dome.
-    pub fn new(theatre: &Theatre, view: &View, size_m: Option<[f64; 2]>, plane: &Plane) -> Self {
+    pub(crate) fn new(theatre: &Theatre, view: &View, size_m: Option<[f64; 2]>, plane: &Plane) -> Self {
         let [about_x, about_y] = plane.tilt_deg.map(f64::to_radians);
         let turn = DMat3::from_rotation_y(about_y) * DMat3::from_rotation_x(about_x);
         let texels = [plane.mask.width, plane.mask.height];
@@ -96,13 +96,13 @@ impl Tilted {
     }
 
     /// Every padded texel that samples of pixel (i, j) can fall on.
-    pub fn range(&self, i: usize, j: usize) -> (Range, Range) {
+    pub(crate) fn range(&self, i: usize, j: usize) -> (Range, Range) {
         let seen = self.seen(i, j);
         (seen.x.range, seen.y.range)
     }
 
     /// The numbers of pixel (i, j).
-    pub fn seen(&self, i: usize, j: usize) -> Seen {
+    pub(crate) fn seen(&self, i: usize, j: usize) -> Seen {
         let e = &self.exact;
         let p = project::pixel_m(&e.screen, e.size, i as f64, j as f64).extend(0.0);
         let grid = |x: DVec3| {

@@ -17,7 +17,7 @@ const PILOTS: [usize; 2] = [4, 16];
 const SPARSE: usize = 8;
 
 /// Points per replicate for `knobs`; `draw` draws the given rows with the given points.
-pub fn freeze(
+pub(super) fn freeze(
     knobs: &Knobs,
     height: usize,
     started: Instant,
@@ -51,7 +51,7 @@ pub fn freeze(
 }
 
 /// Root mean square of the standard error over penumbra pixels, in units of the brightest unshadowed pixel.
-pub fn rms(rows: &[Row]) -> f64 {
+pub(super) fn rms(rows: &[Row]) -> f64 {
     let penumbra: u64 = rows.iter().map(|r| r.penumbra).sum();
     let square: f64 = rows.iter().map(|r| r.error_square).sum();
     let full = rows.iter().map(|r| r.brightest).fold(0.0, f64::max);

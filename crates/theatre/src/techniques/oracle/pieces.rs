@@ -49,7 +49,13 @@ fn cut(shape: &EmitterShape, n: usize) -> Vec<Piece> {
 }
 
 /// Both visibilities of an emitter of any shape; pieces are halved until two levels differ by less than `tolerance`.
-pub fn at(theatre: &Theatre, shape: &EmitterShape, p: DVec2, tolerance: f64, upright: bool) -> Visibility {
+pub(super) fn at(
+    theatre: &Theatre,
+    shape: &EmitterShape,
+    p: DVec2,
+    tolerance: f64,
+    upright: bool,
+) -> Visibility {
     // One upright plane is exact in each piece: only the disk's edge is left to refine.
     let mut n = 1;
     let mut last = level(theatre, shape, p, n, upright);

@@ -12,7 +12,7 @@ use crate::irradiance::UnitRows;
 
 /// The lit screen and how much of its light each emitter gives.
 #[derive(Debug)]
-pub struct Background {
+pub(super) struct Background {
     key: Key,
     /// The lit screen's radiance: three planes, or one where all three would be equal.
     pub lit: Vec<Vec<f32>>,
@@ -88,13 +88,13 @@ struct Row<'a> {
 
 impl Background {
     /// Whether this one still serves.
-    pub fn serves(&self, theatre: &Theatre, view: &View) -> bool {
+    pub(super) fn serves(&self, theatre: &Theatre, view: &View) -> bool {
         let dome = matches!(theatre.ambient, Ambient::Dome { .. });
         self.key.holds(theatre, view) && (!dome || self.albedo.is_some())
     }
 
     /// Draws the screen without puppets.
-    pub fn new(theatre: &Theatre, view: &View) -> Self {
+    pub(super) fn new(theatre: &Theatre, view: &View) -> Self {
         let emitters = &theatre.lamp.emitters;
         let albedo = albedo::on_grid(&theatre.screen, view);
         let lamp_m = theatre.lamp.position_m;
@@ -151,23 +151,23 @@ impl Background {
     }
 
     /// Radiance of channel `c`.
-    pub fn lit(&self, c: usize) -> &[f32] {
+    pub(super) fn lit(&self, c: usize) -> &[f32] {
         &self.lit[c.min(self.lit.len() - 1)]
     }
 
     /// Share of emitter `e` (any but `rest`) in channel `c`.
-    pub fn share(&self, e: usize, c: usize) -> &[f32] {
+    pub(super) fn share(&self, e: usize, c: usize) -> &[f32] {
         let planes = &self.share[e];
         &planes[c.min(planes.len() - 1)]
     }
 
     /// Channels of which shares differ: 1 or 3.
-    pub fn share_channels(&self) -> usize {
+    pub(super) fn share_channels(&self) -> usize {
         self.share.iter().map(Vec::len).max().unwrap_or(1).max(1)
     }
 
     /// Makes sure that the lit screen's display codes for `white` are there; tells whether they were.
-    pub fn encode(&mut self, white: f64) -> bool {
+    pub(super) fn encode(&mut self, white: f64) -> bool {
         if self.encoded.as_ref().is_some_and(|(w, _)| *w == white) {
             return true;
         }
@@ -185,7 +185,7 @@ impl Background {
     }
 
     /// Writes the lit screen's display codes of `pixels`; [`encode`](Self::encode) must have made them.
-    pub fn copy_lit(&self, pixels: std::ops::Range<usize>, out: &mut [u32]) {
+    pub(super) fn copy_lit(&self, pixels: std::ops::Range<usize>, out: &mut [u32]) {
         match &self.encoded {
             Some((_, Codes::Grey(codes))) => widen(&codes[pixels], out),
             Some((_, Codes::Colour(codes))) => out.copy_from_slice(&codes[pixels]),

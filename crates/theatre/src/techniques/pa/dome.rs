@@ -23,7 +23,7 @@ const MOST: usize = 2048;
 
 /// One plane's blocking of the dome, in one channel, on a lattice around the plane's centre.
 #[derive(Debug)]
-pub struct DomeMap {
+pub(super) struct DomeMap {
     mask: Arc<Mask>,
     channel: usize,
     distance_m: f64,
@@ -40,7 +40,7 @@ pub struct DomeMap {
 
 /// The dome as the screen sees it.
 #[derive(Debug)]
-pub struct DomeLight<'a> {
+pub(super) struct DomeLight<'a> {
     radiance: [f64; 3],
     /// Per plane: its centre and its map a channel.
     pub planes: Vec<(DVec2, Vec<&'a DomeMap>)>,
@@ -60,7 +60,7 @@ fn serves(map: &DomeMap, theatre: &Theatre, plane: &Plane, channel: usize, steps
 }
 
 /// Makes `maps` hold what the theatre's planes need, with `steps` lattice points per distance, and no other; returns how many were made.
-pub fn prepare(theatre: &Theatre, steps: u32, maps: &mut Vec<DomeMap>) -> u64 {
+pub(super) fn prepare(theatre: &Theatre, steps: u32, maps: &mut Vec<DomeMap>) -> u64 {
     let needed: Vec<(&Plane, usize)> =
         theatre.planes.iter().flat_map(|p| (0..p.mask.channels).map(move |c| (p, c))).collect();
     maps.retain(|map| needed.iter().any(|(p, c)| serves(map, theatre, p, *c, steps)));
@@ -76,7 +76,7 @@ pub fn prepare(theatre: &Theatre, steps: u32, maps: &mut Vec<DomeMap>) -> u64 {
 
 impl<'a> DomeLight<'a> {
     /// From maps that [`prepare`] made.
-    pub fn new(theatre: &Theatre, radiance: [f64; 3], steps: u32, maps: &'a [DomeMap]) -> Self {
+    pub(super) fn new(theatre: &Theatre, radiance: [f64; 3], steps: u32, maps: &'a [DomeMap]) -> Self {
         let of = |plane: &Plane| {
             let channels = (0..plane.mask.channels)
                 .filter_map(|c| maps.iter().find(|map| serves(map, theatre, plane, c, steps)))
@@ -87,7 +87,7 @@ impl<'a> DomeLight<'a> {
     }
 
     /// E_a / π of channel `c` at `p_m`: the radiance times what the planes leave of the dome.
-    pub fn radiance(&self, c: usize, p_m: DVec2) -> f32 {
+    pub(super) fn radiance(&self, c: usize, p_m: DVec2) -> f32 {
         let through = |(centre, maps): &(DVec2, Vec<&DomeMap>)| match maps.get(c.min(maps.len().max(1) - 1)) {
             Some(map) => 1.0 - map.at(p_m - *centre),
             None => 1.0,
@@ -149,13 +149,13 @@ impl DomeMap {
     }
 
     /// The lattice's values, row by row, and how many a row.
-    pub fn lattice(&self) -> (&[f32], usize) {
+    pub(super) fn lattice(&self) -> (&[f32], usize) {
         (&self.values, self.width)
     }
 
     /// The first of four lattice columns and rows around an offset from the plane's centre, before any is clamped to the lattice,
     /// and their weights.
-    pub fn taps(&self, offset_m: DVec2) -> ([f64; 2], [[f64; 4]; 2]) {
+    pub(super) fn taps(&self, offset_m: DVec2) -> ([f64; 2], [[f64; 4]; 2]) {
         let t = (offset_m - self.origin_m) * DVec2::new(1.0, -1.0) / self.step_m;
         let first = t.floor();
         let weights = t - first;

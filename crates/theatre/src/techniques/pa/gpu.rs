@@ -35,7 +35,7 @@ use crate::project::sides_m;
 
 use answers::{count, fill, scatter};
 use passes::Passes;
-pub use passes::Shaders;
+pub(super) use passes::Shaders;
 use screen::DeviceScreen;
 use tables::DeviceTables;
 use targets::{CELLS, Host, Layers, List, Target};
@@ -43,7 +43,7 @@ use words::ROW;
 use work::{ACROSS, Batch, MOST_ROWS, MOST_TILES, Stage, Work};
 
 /// PA's GPU renderer: keeps pipelines, tables, the lit screen and targets between drawings.
-pub struct OnGpu {
+pub(super) struct OnGpu {
     passes: Passes,
     knobs: Knobs,
     bins: wgpu::TextureView,
@@ -93,7 +93,7 @@ pub(super) fn renderer(gpu: Gpu, knobs: Knobs) -> Result<Box<dyn Renderer<Theatr
 
 impl OnGpu {
     /// Compiles `shaders`, which are the default ones but for tests that need wrong ones.
-    pub fn new(gpu: Gpu, knobs: Knobs, shaders: &Shaders) -> Result<Self, RenderError> {
+    pub(super) fn new(gpu: Gpu, knobs: Knobs, shaders: &Shaders) -> Result<Self, RenderError> {
         let entries = Srgb::get().entries();
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let bins = gpu.texture("bins", [entries.len(), 1, 1], wgpu::TextureFormat::R32Uint, usage);

@@ -24,11 +24,11 @@ impl Kept {
 
 /// Tables that [`prepare`](Self::prepare) made and did not forget.
 #[derive(Debug, Default)]
-pub struct Tables(Vec<Kept>);
+pub(super) struct Tables(Vec<Kept>);
 
 impl Tables {
     /// Makes it hold what `plan` needs and no other, building all anew unless `keep`; counts what was built and what was there.
-    pub fn prepare(&mut self, theatre: &Theatre, plan: &Plan, keep: bool, stats: &mut Stats) {
+    pub(super) fn prepare(&mut self, theatre: &Theatre, plan: &Plan, keep: bool, stats: &mut Stats) {
         let mut needed: Vec<(usize, usize)> = Vec::new();
         for p in (0..theatre.planes.len()).filter(|p| plan.lookups.iter().any(|l| l.plane == *p)) {
             needed.extend((0..theatre.planes[p].mask.channels).map(|c| (p, c)));
@@ -56,7 +56,7 @@ impl Tables {
     }
 
     /// The table of look-up `l` in channel `c` at `l * plan.channels + c`; [`prepare`](Self::prepare) must have been called.
-    pub fn of(&self, theatre: &Theatre, plan: &Plan) -> Vec<&Table> {
+    pub(super) fn of(&self, theatre: &Theatre, plan: &Plan) -> Vec<&Table> {
         let find = |p: usize, c: usize| {
             let need = (p, c % theatre.planes[p].mask.channels);
             let kept = self.0.iter().find(|kept| serves(kept, theatre, plan, need));

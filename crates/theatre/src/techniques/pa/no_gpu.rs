@@ -2,6 +2,7 @@
 
 use kelir_frame::gpu::Gpu;
 use kelir_frame::{RenderError, Renderer};
+use kelir_scene::Theatre;
 
 use super::Knobs;
 

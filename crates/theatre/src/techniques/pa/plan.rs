@@ -12,7 +12,7 @@ use crate::project::{ShadowBox, is_tilted, pixel_m, sides_m};
 
 /// One plane seen from one piece.
 #[derive(Clone, Debug)]
-pub struct Lookup {
+pub(crate) struct Lookup {
     /// Index into the theatre's planes.
     pub plane: usize,
     /// Index into the plan's pieces.
@@ -35,7 +35,7 @@ pub struct Lookup {
 
 /// Everything but the pixels.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub(crate) struct Plan {
     /// Sub-pixels a pixel and axis.
     pub sub: usize,
     /// Pieces, grouped by emitter.
@@ -58,12 +58,16 @@ fn refuse(reason: String) -> RenderError {
 
 impl Plan {
     /// Errors: what this code can't draw truthfully.
-    pub fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
+    pub(crate) fn new(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
         Self::of(theatre, view, knobs, false)
     }
 
     /// The same with look-ups also of the planes that no light passes: they change nothing.
-    pub fn with_planes_off_beam(theatre: &Theatre, view: &View, knobs: &Knobs) -> Result<Self, RenderError> {
+    pub(crate) fn with_planes_off_beam(
+        theatre: &Theatre,
+        view: &View,
+        knobs: &Knobs,
+    ) -> Result<Self, RenderError> {
         Self::of(theatre, view, knobs, true)
     }
 

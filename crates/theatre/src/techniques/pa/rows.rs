@@ -11,14 +11,20 @@ const SPARE: usize = 32;
 
 /// A combined table row: entry `margin + t` is the fixed-point weighted sum over the row's box of all texels left of t.
 #[derive(Debug, Default)]
-pub struct Combined {
+pub(crate) struct Combined {
     sums: Vec<u64>,
     strips: Vec<(usize, u32)>,
 }
 
 impl Combined {
     /// Combines what windows `columns` of image row `j` need.
-    pub fn combine(&mut self, table: &Table, lookup: &Lookup, j: usize, columns: std::ops::Range<usize>) {
+    pub(crate) fn combine(
+        &mut self,
+        table: &Table,
+        lookup: &Lookup,
+        j: usize,
+        columns: std::ops::Range<usize>,
+    ) {
         let margin = lookup.x.reach;
         // The vector loops read whole registers from any entry on.
         self.sums.resize(table.width + 2 * margin + 2 + SPARE, 0);
@@ -42,7 +48,7 @@ impl Combined {
     }
 
     /// Mean transmittances (1 − opacity) of windows `columns`, from what `combine` left for them, into `out` of the same length.
-    pub fn look_up(&self, lookup: &Lookup, columns: std::ops::Range<usize>, out: &mut [f32]) {
+    pub(crate) fn look_up(&self, lookup: &Lookup, columns: std::ops::Range<usize>, out: &mut [f32]) {
         let x = &lookup.x;
         let count = x.start.len();
         assert!(columns.end <= count && columns.len() == out.len(), "columns of the plan");
@@ -227,7 +233,7 @@ mod avx512 {
     use super::look_up_generic;
 
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-    pub fn far<const K: usize>(
+    pub(super) fn far<const K: usize>(
         sums: &[u64],
         ends: (&[i32], &[i32]),
         weights: (&[f64], &[f64]),
@@ -239,7 +245,7 @@ mod avx512 {
     }
 
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-    pub fn near<const K: usize>(
+    pub(super) fn near<const K: usize>(
         sums: &[u64],
         (start, stop): (&[i32], &[i32]),
         (start_before, stop_before): (&[f64], &[f64]),

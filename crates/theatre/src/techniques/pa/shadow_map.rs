@@ -12,7 +12,7 @@ use super::{Knobs, Variant};
 use crate::project::is_tilted;
 
 /// The theatre that tables are made of: as it is, or mapped where the knobs ask for it and every plane is upright (the plan refuses others).
-pub fn seen<'a>(theatre: &'a Theatre, knobs: &Knobs) -> Cow<'a, Theatre> {
+pub(super) fn seen<'a>(theatre: &'a Theatre, knobs: &Knobs) -> Cow<'a, Theatre> {
     match knobs.variant {
         Variant::ShadowMap if !theatre.planes.iter().any(is_tilted) => {
             Cow::Owned(mapped(theatre, knobs.map_size as usize))

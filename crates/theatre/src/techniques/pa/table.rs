@@ -8,7 +8,7 @@ use rayon::prelude::*;
 ///
 /// `u32` sums may wrap: every *difference* over a box whose own sum is under 2³² is still exact.
 #[derive(Debug)]
-pub struct Table {
+pub(crate) struct Table {
     /// Texels a row.
     pub width: usize,
     /// Rows.
@@ -21,7 +21,7 @@ pub struct Table {
 
 /// Storage, chosen by the largest box.
 #[derive(Debug)]
-pub enum Sums {
+pub(crate) enum Sums {
     /// Exact while a box holds less than 2³².
     U32(Vec<u32>),
     /// Exact for any mask.
@@ -29,7 +29,7 @@ pub enum Sums {
 }
 
 /// A table entry: wraps like the machine's integers.
-pub trait Sum: Copy + Default + Send + Sync + 'static {
+pub(crate) trait Sum: Copy + Default + Send + Sync + 'static {
     /// `self + other`, wrapping.
     fn plus(self, other: Self) -> Self;
     /// `self − other`, wrapping.
@@ -85,7 +85,7 @@ impl Code for u16 {
 
 impl Table {
     /// The table of channel `c` of `mask`; `wide` asks for u64 sums. `spare` is an old table whose memory may be reused.
-    pub fn new(mask: &Mask, c: usize, wide: bool, spare: Option<Table>) -> Self {
+    pub(crate) fn new(mask: &Mask, c: usize, wide: bool, spare: Option<Table>) -> Self {
         let (w, h) = (mask.width, mask.height);
         let channel = (c % mask.channels) * w * h;
         let len = (w + 1) * (h + 1);
@@ -116,7 +116,7 @@ impl Table {
     }
 
     /// Sum of the codes over columns `x` and rows `y` (texel index ranges inside the grid), modulo 2³² for u32 tables.
-    pub fn sum(&self, x: [usize; 2], y: [usize; 2]) -> u64 {
+    pub(crate) fn sum(&self, x: [usize; 2], y: [usize; 2]) -> u64 {
         let at = |x: usize, y: usize| y * (self.width + 1) + x;
         match &self.sums {
             Sums::U32(s) => u64::from(

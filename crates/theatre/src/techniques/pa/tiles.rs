@@ -12,11 +12,11 @@ use super::table::{Sums, Table};
 use crate::project::pixel_m;
 
 /// Columns and rows of a tile: what is classified as lit, dark or penumbra at once.
-pub const TILE: [usize; 2] = [32, 8];
+pub(super) const TILE: [usize; 2] = [32, 8];
 
 /// What a tile sees of one plane from one piece in one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
+pub(super) enum State {
     /// All light comes through.
     Lit,
     /// None does.
@@ -27,7 +27,7 @@ pub enum State {
 
 /// What a tile's pixels need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(super) enum Kind {
     /// The lit screen, as it is.
     Lit,
     /// Nothing: every emitter is hidden and there is no other light.
@@ -37,7 +37,7 @@ pub enum Kind {
 }
 
 /// What tiles are told apart by.
-pub struct Tiles<'a> {
+pub(super) struct Tiles<'a> {
     /// The scene.
     pub theatre: &'a Theatre,
     /// The image.
@@ -85,7 +85,7 @@ impl Tiles<'_> {
     }
 
     /// What every tile of a band sees of every look-up in every channel, at `tile * entries + entry`.
-    pub fn see(&self, rows: &Range<usize>, states: &mut Vec<State>) {
+    pub(super) fn see(&self, rows: &Range<usize>, states: &mut Vec<State>) {
         let (sub, channels, entries) = (self.plan.sub, self.plan.channels, self.tables.len());
         let tiles = self.view.size[0].div_ceil(TILE[0]);
         states.clear();
@@ -120,7 +120,7 @@ impl Tiles<'_> {
     }
 
     /// What a tile needs that sees `states`.
-    pub fn kind(&self, states: &[State]) -> Kind {
+    pub(super) fn kind(&self, states: &[State]) -> Kind {
         let all = |state: State, skip: Skips| self.skips.has(skip) && states.iter().all(|s| *s == state);
         match self.theatre.ambient {
             Ambient::Dome { .. } => Kind::Shade,
@@ -131,7 +131,7 @@ impl Tiles<'_> {
     }
 
     /// Runs of tiles of the same kind, the same for every row of a band: kind and columns.
-    pub fn runs(&self, states: &[State]) -> Vec<(Kind, Range<usize>)> {
+    pub(super) fn runs(&self, states: &[State]) -> Vec<(Kind, Range<usize>)> {
         let entries = self.tables.len();
         let kind = |t: usize| self.kind(&states[t * entries..(t + 1) * entries]);
         let mut runs: Vec<(Kind, Range<usize>)> = Vec::new();

@@ -7,13 +7,13 @@ use crate::project::tilted::{Piece, PlaneFrame};
 
 impl Table {
     /// Mean opacity of what `p_m` sees of `piece` on the plane of `frame`.
-    pub fn opacity(&self, frame: &PlaneFrame, piece: &Piece, p_m: DVec2) -> f64 {
+    pub(crate) fn opacity(&self, frame: &PlaneFrame, piece: &Piece, p_m: DVec2) -> f64 {
         frame.seen(piece, p_m).map_or(0.0, |(centre, sides)| self.mean(centre, sides))
     }
 
     /// Mean opacity of the box with the given centre and full sides, texels: whole columns and rows by integer differences, the
     /// fractional ones at its ends (at most 3 × 3 blocks) weighed afterwards.
-    pub fn mean(&self, centre: DVec2, sides: DVec2) -> f64 {
+    pub(crate) fn mean(&self, centre: DVec2, sides: DVec2) -> f64 {
         let (xs, x_count) = parts(centre.x, sides.x, self.width);
         let (ys, y_count) = parts(centre.y, sides.y, self.height);
         let mut sum = 0.0;

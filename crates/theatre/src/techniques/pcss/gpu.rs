@@ -70,7 +70,7 @@ pub(crate) struct Scene {
 
 impl OnGpu {
     /// Compiles `wgsl`, which is [`WGSL`] but for tests that need a wrong one.
-    pub fn new(gpu: Gpu, wgsl: &str) -> Result<Self, RenderError> {
+    pub(super) fn new(gpu: Gpu, wgsl: &str) -> Result<Self, RenderError> {
         let module = gpu.module("pcss.wgsl", wgsl);
         let pipeline = gpu.pipeline(&module, "filter_jobs");
         gpu.check()?;
@@ -78,7 +78,7 @@ impl OnGpu {
     }
 
     /// Uploads what changed.
-    pub fn prepare(&mut self, shader: &Shader) -> Result<Scene, RenderError> {
+    pub(super) fn prepare(&mut self, shader: &Shader) -> Result<Scene, RenderError> {
         let (mut beams, mut penumbrae) = (Vec::new(), Vec::new());
         let (mut widths, mut centres) = (Vec::new(), Vec::<i32>::new());
         let mut places = Vec::<[i32; 4]>::new();
@@ -161,7 +161,7 @@ impl OnGpu {
     }
 
     /// One sum of codes a job and channel.
-    pub fn run(&mut self, scene: &Scene, jobs: &[Job]) -> Result<Vec<u32>, RenderError> {
+    pub(super) fn run(&mut self, scene: &Scene, jobs: &[Job]) -> Result<Vec<u32>, RenderError> {
         /// Jobs in one submission: 48 MiB of coloured sums.
         const JOBS: usize = 1 << 22;
         let per_job = scene.params.channels as usize;

@@ -53,7 +53,12 @@ pub(crate) struct Penumbra {
 
 impl Beam {
     /// `None` where the puppet's shadow falls off the screen and skipping that is allowed. Errors: a puppet too small for fixed point.
-    pub fn new(theatre: &Theatre, view: &View, p: usize, knobs: &Knobs) -> Result<Option<Self>, RenderError> {
+    pub(super) fn new(
+        theatre: &Theatre,
+        view: &View,
+        p: usize,
+        knobs: &Knobs,
+    ) -> Result<Option<Self>, RenderError> {
         let (plane, lamp) = (&theatre.planes[p], theatre.lamp.position_m);
         let corners = plane.corners_m();
         let depths = corners.map(|c| -c.z);
@@ -124,13 +129,13 @@ impl Beam {
     }
 
     /// What a map depends on, as text.
-    pub fn key(&self, plane: &Plane, lamp: &Lamp) -> String {
+    pub(super) fn key(&self, plane: &Plane, lamp: &Lamp) -> String {
         let place = (plane.mask.id, plane.centre_m, plane.size_m, plane.tilt_deg);
         format!("{place:?} {:?} {:?} {:?} {}", lamp.position_m, self.low, self.high, self.size)
     }
 
     /// Every padded texel that emitter `e`'s samples at pixel (i, j) can fall on.
-    pub fn range(&self, e: usize, i: usize, j: usize) -> (Range, Range) {
+    pub(super) fn range(&self, e: usize, i: usize, j: usize) -> (Range, Range) {
         let [x, y] = [(self.columns[i], 0), (self.rows[j], 1)].map(|(centre, d)| {
             // One more for the rounding of each product.
             let half = (self.emitters[e].search[d] >> 1) + (self.pixel[d] >> 1) + 2;
@@ -142,14 +147,14 @@ impl Beam {
 
     /// The padded texel at a fixed-point place.
     #[inline(always)]
-    pub fn padded(&self, t: i32) -> u32 {
+    pub(super) fn padded(&self, t: i32) -> u32 {
         ((t >> self.bits).clamp(-1, self.size as i32) + 1) as u32
     }
 }
 
 impl Map {
     /// Point samples at the map's texel centres.
-    pub fn new(theatre: &Theatre, plane: &Plane, beam: &Beam, knobs: &Knobs) -> Self {
+    pub(super) fn new(theatre: &Theatre, plane: &Plane, beam: &Beam, knobs: &Knobs) -> Self {
         let (lamp, size) = (theatre.lamp.position_m, beam.size);
         let [right, up, normal] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| turned(plane, axis));
         let grid = DVec2::new(plane.mask.width as f64, plane.mask.height as f64);

@@ -66,7 +66,7 @@ fn scaled(width: i32, place: i32) -> i32 {
 
 impl Shader<'_> {
     /// All rows.
-    pub fn rows(&self) -> Vec<Row> {
+    pub(super) fn rows(&self) -> Vec<Row> {
         let row = |j: usize| {
             let row = self.row(j, &mut |job| self.filtered(job));
             self.meter.add(1);
@@ -76,7 +76,7 @@ impl Shader<'_> {
     }
 
     /// All rows with sums from `draw`, which is handed the jobs of many rows at a time: one sum a channel.
-    pub fn rows_by(
+    pub(super) fn rows_by(
         &self,
         mut draw: impl FnMut(&[Job]) -> Result<Vec<u32>, RenderError>,
     ) -> Result<Vec<Row>, RenderError> {

@@ -10,7 +10,7 @@ use crate::pa::background::Background;
 use crate::pa::tiles::{Kind, TILE};
 
 /// Pixels of each kind, and boxes.
-pub fn count(stage: &Stage, work: &Work, stats: &mut Stats) {
+pub(super) fn count(stage: &Stage, work: &Work, stats: &mut Stats) {
     let [w, h] = work.size;
     let across = w.div_ceil(TILE[0]);
     let mut pixels = [0u64; 3];
@@ -36,7 +36,7 @@ pub fn count(stage: &Stage, work: &Work, stats: &mut Stats) {
 }
 
 /// Writes the tiles that are not shaded: the lit screen's codes, or black.
-pub fn fill(stage: &Stage, background: &Background, width: usize, out: &mut [u32]) {
+pub(super) fn fill(stage: &Stage, background: &Background, width: usize, out: &mut [u32]) {
     let across = width.div_ceil(TILE[0]);
     let rows = out.par_chunks_mut(TILE[1] * width).zip(stage.kinds.par_chunks(across)).enumerate();
     rows.for_each(|(j, (out, kinds))| {
@@ -58,7 +58,7 @@ pub fn fill(stage: &Stage, background: &Background, width: usize, out: &mut [u32
 }
 
 /// Puts answers, four pixels of a column together, where they belong.
-pub fn scatter(words: &[u32], tiles: &[Tile], width: usize, out: &mut [u32]) {
+pub(super) fn scatter(words: &[u32], tiles: &[Tile], width: usize, out: &mut [u32]) {
     let rows = out.par_chunks_mut(TILE[1] * width).enumerate();
     rows.for_each(|(j, out)| {
         let first = tiles.partition_point(|t| t.home[1] < j * TILE[1]);

@@ -9,7 +9,7 @@ use kelir_frame::gpu::Gpu;
 
 /// The shaders' texts, in the order they run.
 #[derive(Clone, Debug)]
-pub struct Shaders {
+pub(crate) struct Shaders {
     pub table: String,
     pub rows: String,
     pub tilted: String,
@@ -32,7 +32,7 @@ impl Default for Shaders {
 /// Of `combine`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-pub struct RowsParams {
+pub(super) struct RowsParams {
     pub blocks: u32,
     pub width: u32,
     pub height: u32,
@@ -42,7 +42,7 @@ pub struct RowsParams {
 /// Of `slope`.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
-pub struct SlopeParams {
+pub(super) struct SlopeParams {
     pub tiles: u32,
     pub count: u32,
     pub maps: u32,
@@ -60,7 +60,7 @@ pub struct SlopeParams {
 /// Of `add`.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
-pub struct VisibilityParams {
+pub(super) struct VisibilityParams {
     pub tiles: u32,
     pub pieces: u32,
     pub lookups: u32,
@@ -82,7 +82,7 @@ pub struct VisibilityParams {
 /// Of `codes` and `radiance`.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
-pub struct ShadeParams {
+pub(super) struct ShadeParams {
     pub tiles: u32,
     pub stride: u32,
     pub count: u32,
@@ -101,7 +101,7 @@ pub struct ShadeParams {
 
 /// A pass that draws: one fragment an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Pass {
+pub(super) enum Pass {
     Combine,
     Slope,
     Add,
@@ -122,13 +122,13 @@ impl Pass {
 }
 
 /// What all targets hold: four answers a fragment.
-pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 /// Values of a shader's `override` constants.
-pub type Constants = Vec<(&'static str, u32)>;
+pub(super) type Constants = Vec<(&'static str, u32)>;
 
 /// Shader modules, layouts and the pipelines made so far.
-pub struct Passes {
+pub(super) struct Passes {
     pub gpu: Gpu,
     table: wgpu::ShaderModule,
     modules: [wgpu::ShaderModule; 4],
@@ -138,7 +138,7 @@ pub struct Passes {
 
 impl Passes {
     /// Reads the shaders; pipelines are made when they are first needed.
-    pub fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, RenderError> {
+    pub(super) fn new(gpu: Gpu, shaders: &Shaders) -> Result<Self, RenderError> {
         // Dimensions of the textures behind the uniform buffer at binding 0.
         let (flat, layers) = (wgpu::TextureViewDimension::D2, wgpu::TextureViewDimension::D2Array);
         let new = Self {
@@ -163,7 +163,7 @@ impl Passes {
     }
 
     /// The compute pipeline of an entry point of table.wgsl.
-    pub fn table(&self, entry: &str, wide: bool) -> wgpu::ComputePipeline {
+    pub(super) fn table(&self, entry: &str, wide: bool) -> wgpu::ComputePipeline {
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(entry),
             layout: None,
@@ -223,7 +223,7 @@ impl Passes {
     }
 
     /// Runs `pass` for every fragment of rows `rows` of `target`: `params` at binding 0, then the textures.
-    pub fn run<P: bytemuck::NoUninit>(
+    pub(super) fn run<P: bytemuck::NoUninit>(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         (pass, constants): (Pass, &Constants),

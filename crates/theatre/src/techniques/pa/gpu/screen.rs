@@ -9,7 +9,7 @@ use crate::albedo::PixelAlbedo;
 
 /// Layers: the lit screen's channels, then the shares of every emitter but the rest, channel by channel, then an albedo that is an
 /// image and asked for by the dome. A texel holds four rows.
-pub struct DeviceScreen {
+pub(super) struct DeviceScreen {
     pub view: wgpu::TextureView,
     /// The albedo where it is one colour.
     pub uniform: Option<[f32; 3]>,
@@ -19,7 +19,7 @@ pub struct DeviceScreen {
 
 impl DeviceScreen {
     /// Uploads `background`; errors where a texture can't be as large as the image.
-    pub fn new(gpu: &Gpu, background: &Background, size: [usize; 2]) -> Result<Self, RenderError> {
+    pub(super) fn new(gpu: &Gpu, background: &Background, size: [usize; 2]) -> Result<Self, RenderError> {
         let limits = gpu.device.limits();
         let (image, uniform) = match &background.albedo {
             Some(PixelAlbedo::Image(planes)) => (&planes[..], None),
@@ -62,13 +62,13 @@ impl DeviceScreen {
     }
 
     /// The layer of emitter `e`'s share in channel 0.
-    pub fn share_layer(&self, e: usize, rest: usize) -> usize {
+    pub(super) fn share_layer(&self, e: usize, rest: usize) -> usize {
         self.lit_channels + (e - usize::from(e > rest)) * self.share_channels
     }
 }
 
 /// All layers of a texture.
-pub fn layered(texture: &wgpu::Texture) -> wgpu::TextureView {
+pub(super) fn layered(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()

@@ -11,12 +11,12 @@ use super::passes::Passes;
 use super::screen::layered;
 
 /// Lanes of a workgroup, each with a row or a column.
-pub const WORKGROUP: u32 = 32;
+pub(super) const WORKGROUP: u32 = 32;
 
 /// The shader's `Params`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-pub struct TableParams {
+pub(super) struct TableParams {
     pub width: u32,
     pub height: u32,
     pub max_code: u32,
@@ -32,11 +32,11 @@ struct Table {
 
 /// All tables.
 #[derive(Default)]
-pub struct DeviceTables(Vec<Table>);
+pub(super) struct DeviceTables(Vec<Table>);
 
 impl DeviceTables {
     /// Builds the tables of masks that are new, or of all unless `keep`, and forgets those that are gone.
-    pub fn prepare(
+    pub(super) fn prepare(
         &mut self,
         passes: &Passes,
         theatre: &Theatre,
@@ -54,7 +54,7 @@ impl DeviceTables {
     }
 
     /// The table of channel `c` of `mask`.
-    pub fn of(&self, mask: &Mask, wide: bool, c: usize) -> &wgpu::TextureView {
+    pub(super) fn of(&self, mask: &Mask, wide: bool, c: usize) -> &wgpu::TextureView {
         let table = self.0.iter().find(|t| t.mask.id == mask.id && t.wide == wide);
         let channels = &table.expect("prepared for this plan").channels;
         &channels[c.min(channels.len() - 1)]

@@ -8,18 +8,18 @@ use super::words::ROW;
 use super::work::ACROSS;
 
 /// Fragments a row of a target whose cells are tiles.
-pub const CELLS: usize = ACROSS * 32;
+pub(super) const CELLS: usize = ACROSS * 32;
 
 const DRAWN: wgpu::TextureUsages =
     wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
 
 /// A texture that passes draw to, with as many layers as asked for.
 #[derive(Default)]
-pub struct Target(Option<(wgpu::Texture, wgpu::TextureView)>);
+pub(super) struct Target(Option<(wgpu::Texture, wgpu::TextureView)>);
 
 impl Target {
     /// Makes it at least this large: width, height, layers.
-    pub fn reserve(&mut self, gpu: &Gpu, label: &str, size: [usize; 3]) {
+    pub(super) fn reserve(&mut self, gpu: &Gpu, label: &str, size: [usize; 3]) {
         let serves = |t: &wgpu::Texture| {
             let have = [t.width(), t.height(), t.depth_or_array_layers()];
             have.iter().zip(size).all(|(have, want)| *have as usize >= want)
@@ -32,16 +32,16 @@ impl Target {
     }
 
     /// All layers.
-    pub fn all(&self) -> &wgpu::TextureView {
+    pub(super) fn all(&self) -> &wgpu::TextureView {
         &self.0.as_ref().expect("reserved before it is used").1
     }
 
     /// Layer `k` alone.
-    pub fn layer(&self, k: usize) -> wgpu::TextureView {
+    pub(super) fn layer(&self, k: usize) -> wgpu::TextureView {
         layer(self.texture(), k)
     }
 
-    pub fn texture(&self) -> &wgpu::Texture {
+    pub(super) fn texture(&self) -> &wgpu::Texture {
         &self.0.as_ref().expect("reserved before it is used").0
     }
 }
@@ -57,11 +57,11 @@ fn layer(texture: &wgpu::Texture, k: usize) -> wgpu::TextureView {
 
 /// A list of words, or of word vectors, as a texture.
 #[derive(Default)]
-pub struct List(Option<(wgpu::Texture, wgpu::TextureView)>);
+pub(super) struct List(Option<(wgpu::Texture, wgpu::TextureView)>);
 
 impl List {
     /// Uploads whole rows, elements of 4 or 16 bytes.
-    pub fn write<T: bytemuck::NoUninit>(&mut self, gpu: &Gpu, words: &[T]) {
+    pub(super) fn write<T: bytemuck::NoUninit>(&mut self, gpu: &Gpu, words: &[T]) {
         let rows = words.len() / ROW;
         if self.0.as_ref().is_none_or(|(t, _)| (t.height() as usize) < rows) {
             let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
@@ -75,14 +75,14 @@ impl List {
         }
     }
 
-    pub fn view(&self) -> &wgpu::TextureView {
+    pub(super) fn view(&self) -> &wgpu::TextureView {
         &self.0.as_ref().expect("written before it is read").1
     }
 }
 
 /// Sums that go on from pass to pass, so each layer has two textures that take turns; the second is made when it is first needed.
 #[derive(Default)]
-pub struct Layers {
+pub(super) struct Layers {
     size: [usize; 2],
     turns: [Option<(wgpu::Texture, wgpu::TextureView)>; 2],
     /// Which texture has a layer's sums, if any has.
@@ -92,7 +92,7 @@ pub struct Layers {
 
 impl Layers {
     /// Starts all layers anew, `height` rows of fragments each.
-    pub fn begin(&mut self, gpu: &Gpu, height: usize, layers: usize) {
+    pub(super) fn begin(&mut self, gpu: &Gpu, height: usize, layers: usize) {
         if self.size[0] < height || self.size[1] < layers {
             self.size = [height, layers];
             self.turns = [Some(self.make(gpu)), None];
@@ -113,7 +113,7 @@ impl Layers {
     }
 
     /// What layer `k` holds so far, what to draw it to next, and whether there is anything so far.
-    pub fn turn(&mut self, gpu: &Gpu, k: usize) -> (wgpu::TextureView, wgpu::TextureView, bool) {
+    pub(super) fn turn(&mut self, gpu: &Gpu, k: usize) -> (wgpu::TextureView, wgpu::TextureView, bool) {
         let before = self.at[k];
         let next = before.map_or(0, |at| 1 - at);
         if self.turns[next].is_none() {
@@ -129,7 +129,7 @@ impl Layers {
     }
 
     /// Brings all layers together in the first texture.
-    pub fn settle(&mut self, encoder: &mut wgpu::CommandEncoder) {
+    pub(super) fn settle(&mut self, encoder: &mut wgpu::CommandEncoder) {
         for (k, at) in self.at.iter_mut().enumerate().filter(|(_, at)| **at == Some(1)) {
             *at = Some(0);
             if let [Some((to, _)), Some((from, _))] = &self.turns {
@@ -145,12 +145,12 @@ impl Layers {
     }
 
     /// All layers, after [`settle`](Self::settle).
-    pub fn all(&self) -> &wgpu::TextureView {
+    pub(super) fn all(&self) -> &wgpu::TextureView {
         &self.turns[0].as_ref().expect("made by begin").1
     }
 
     /// Layer `k`, after [`settle`](Self::settle).
-    pub fn copy_of(&self, k: usize) -> wgpu::TexelCopyTextureInfo<'_> {
+    pub(super) fn copy_of(&self, k: usize) -> wgpu::TexelCopyTextureInfo<'_> {
         let mut copy = self.turns[0].as_ref().expect("made by begin").0.as_image_copy();
         copy.origin.z = k as u32;
         copy
@@ -159,11 +159,11 @@ impl Layers {
 
 /// The mappable buffer that answers are read through.
 #[derive(Default)]
-pub struct Host(Option<wgpu::Buffer>);
+pub(super) struct Host(Option<wgpu::Buffer>);
 
 impl Host {
     /// At least `bytes` bytes.
-    pub fn reserve(&mut self, gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
+    pub(super) fn reserve(&mut self, gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
         match &self.0 {
             Some(buffer) if buffer.size() >= bytes => buffer.clone(),
             _ => self.0.insert(gpu.host("answers", bytes)).clone(),

@@ -14,29 +14,29 @@ use crate::project::tilted::PlaneFrame;
 use crate::project::window::Windows;
 
 /// Word vectors a row of the texture, as in the shaders.
-pub const ROW: usize = 2048;
+pub(super) const ROW: usize = 2048;
 
 /// A list of word vectors under construction.
 #[derive(Default)]
-pub struct Words(pub Vec<[u32; 4]>);
+pub(super) struct Words(pub Vec<[u32; 4]>);
 
 impl Words {
     /// Appends vectors; returns where they begin.
-    pub fn extend(&mut self, vectors: impl IntoIterator<Item = [u32; 4]>) -> u32 {
+    pub(super) fn extend(&mut self, vectors: impl IntoIterator<Item = [u32; 4]>) -> u32 {
         let at = self.0.len() as u32;
         self.0.extend(vectors);
         at
     }
 
     /// Whole rows of the texture, zeros at the end.
-    pub fn padded(&mut self) -> &[[u32; 4]] {
+    pub(super) fn padded(&mut self) -> &[[u32; 4]] {
         self.0.resize(self.0.len().max(1).next_multiple_of(ROW), [0; 4]);
         &self.0
     }
 }
 
 /// Vectors of one window with `reach` weights an end: two for every three weights, (start + k, weights k to k + 2) of each end.
-pub fn vectors(reach: usize) -> usize {
+pub(super) fn vectors(reach: usize) -> usize {
     reach.div_ceil(3) * 2
 }
 
@@ -53,7 +53,7 @@ fn pack(starts: [i32; 2], reach: usize, weight: impl Fn(usize, usize) -> u32, ou
 
 /// Column windows: texel `start + k` weighs `weight[0][k]`, texels from `start + reach` to `second` weigh 1 / width, texel `second + k`
 /// weighs `weight[1][k]`, all times `scale` and f32. `reach` is at least the windows' own.
-pub fn columns(x: &Windows, reach: usize, scale: f64) -> Vec<[u32; 4]> {
+pub(super) fn columns(x: &Windows, reach: usize, scale: f64) -> Vec<[u32; 4]> {
     let each = vectors(reach);
     let mut out = vec![[0; 4]; x.start.len() * each];
     out.par_chunks_exact_mut(each).with_min_len(256).enumerate().for_each(|(i, out)| {
@@ -68,7 +68,7 @@ pub fn columns(x: &Windows, reach: usize, scale: f64) -> Vec<[u32; 4]> {
 }
 
 /// Row windows: as columns, but with the native code's fixed-point weights, whose rounding is carried from row to row.
-pub fn rows(lookup: &Lookup, height: usize, reach: usize) -> Vec<[u32; 4]> {
+pub(super) fn rows(lookup: &Lookup, height: usize, reach: usize) -> Vec<[u32; 4]> {
     let (y, each) = (&lookup.y, vectors(reach));
     let scale = 2f64.powi(lookup.shift as i32) / lookup.unit;
     let mut out = vec![[0; 4]; y.start.len() * each];
@@ -103,7 +103,7 @@ fn ends(windows: &Windows, i: usize, reach: usize) -> (i32, i32, i64) {
 
 /// Three vectors a piece: the look-ups `range` of the batch and its weight; tangents of the first column and row towards its centre
 /// and their steps; its half-sides' tangents.
-pub fn piece(
+pub(super) fn piece(
     theatre: &Theatre,
     size: [usize; 2],
     plan: &Plan,
@@ -123,7 +123,7 @@ pub fn piece(
 }
 
 /// Six vectors a tile for a tilted plane: see tilted.wgsl. `home` is the tile's first pixel.
-pub fn slope(
+pub(super) fn slope(
     theatre: &Theatre,
     size: [usize; 2],
     plan: &Plan,
@@ -177,14 +177,14 @@ pub fn slope(
 }
 
 /// What a piece's half-sides change of a tilted plane's n · q.
-pub fn along(plan: &Plan, lookup: &Lookup, frame: &PlaneFrame) -> [f32; 2] {
+pub(super) fn along(plan: &Plan, lookup: &Lookup, frame: &PlaneFrame) -> [f32; 2] {
     let [w, h] = plan.pieces[lookup.piece].size_m;
     [(0.5 * w * frame.normal.x) as f32, (0.5 * h * frame.normal.y) as f32]
 }
 
 /// Four vectors a plane that hides the dome: where its windows of columns and rows are, its channels; then a map each, where it begins
 /// (`places`) and how wide it is. The windows go to `words`, two vectors each: weights, then the first lattice point.
-pub fn dome(
+pub(super) fn dome(
     theatre: &Theatre,
     size: [usize; 2],
     light: &DomeLight,

@@ -12,14 +12,14 @@ use super::super::tiles::{Kind, State, TILE, Tiles};
 use super::words::{self, Words, vectors};
 
 /// Tiles side by side in a target; a tile takes 32 × 2 fragments of four pixels each.
-pub const ACROSS: usize = 64;
+pub(super) const ACROSS: usize = 64;
 /// Blocks side by side in the target of combined rows, and entries of a block, as in the shaders.
-pub const SHELF: usize = 64;
-pub const BLOCK: usize = 32;
+pub(super) const SHELF: usize = 64;
+pub(super) const BLOCK: usize = 32;
 /// Tiles of a batch: a picture of 1920×1080 is one.
-pub const MOST_TILES: usize = 8192;
+pub(super) const MOST_TILES: usize = 8192;
 /// Rows of the combined rows' target: 32 MiB.
-pub const MOST_ROWS: usize = 1024;
+pub(super) const MOST_ROWS: usize = 1024;
 /// Tiles times layers of tilted planes' opacities: 192 MiB.
 const MOST_SLOPES: usize = 24 * MOST_TILES;
 /// Rows and layers that any adapter has.
@@ -28,13 +28,13 @@ const MOST_LAYERS: usize = 256;
 
 /// A tile that is shaded.
 #[derive(Clone, Copy, Debug)]
-pub struct Tile {
+pub(super) struct Tile {
     /// Its first pixel.
     pub home: [usize; 2],
 }
 
 /// All tiles of an image.
-pub struct Stage {
+pub(super) struct Stage {
     /// What each tile needs, row by row.
     pub kinds: Vec<Kind>,
     /// Those that are shaded, in order.
@@ -46,7 +46,7 @@ pub struct Stage {
 
 impl Stage {
     /// Classifies all tiles; `all` are shaded where more than display codes is asked for. Look-ups that are not `active` are never needed.
-    pub fn new(tiles: &Tiles, all: bool, active: &[bool]) -> Self {
+    pub(super) fn new(tiles: &Tiles, all: bool, active: &[bool]) -> Self {
         let ([w, h], entries) = (tiles.view.size, tiles.tables.len());
         let across = w.div_ceil(TILE[0]);
         let (channels, lookups) = (tiles.plan.channels, tiles.plan.lookups.len());
@@ -82,7 +82,7 @@ impl Stage {
     }
 
     /// Boxes that are looked up in one channel.
-    pub fn boxes(&self) -> u64 {
+    pub(super) fn boxes(&self) -> u64 {
         self.needed.iter().filter(|n| **n).count() as u64
     }
 }
@@ -101,7 +101,7 @@ impl Strip {
 }
 
 /// Combined rows of one table: shelves of the target.
-pub struct Shelves {
+pub(super) struct Shelves {
     /// Index into the theatre's planes.
     pub plane: usize,
     pub channel: usize,
@@ -109,7 +109,7 @@ pub struct Shelves {
 }
 
 /// A tilted plane of a piece: layers of opacities, channel after channel, and where its maps begin among the words.
-pub struct Slope {
+pub(super) struct Slope {
     /// Index into the plan's look-ups.
     pub lookup: usize,
     pub layer: usize,
@@ -118,7 +118,7 @@ pub struct Slope {
 }
 
 /// One submission's worth.
-pub struct Batch {
+pub(super) struct Batch {
     /// Of the stage's shaded tiles.
     pub tiles: Range<usize>,
     /// Of the plan's pieces.
@@ -128,7 +128,7 @@ pub struct Batch {
 }
 
 /// A batch's words and where what begins in them.
-pub struct Script {
+pub(super) struct Script {
     pub words: Words,
     pub tiles: u32,
     pub stride: u32,
@@ -143,7 +143,7 @@ pub struct Script {
 }
 
 /// What batches are made of.
-pub struct Work<'a> {
+pub(super) struct Work<'a> {
     pub theatre: &'a Theatre,
     pub size: [usize; 2],
     pub plan: &'a Plan,
@@ -157,7 +157,7 @@ pub struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    pub fn new(
+    pub(super) fn new(
         theatre: &'a Theatre,
         size: [usize; 2],
         plan: &'a Plan,
@@ -175,7 +175,7 @@ impl<'a> Work<'a> {
     }
 
     /// Rows of a block in the target of combined rows, four sub-pixel rows each.
-    pub fn rows(&self) -> usize {
+    pub(super) fn rows(&self) -> usize {
         TILE[1] / 4 * self.plan.sub
     }
 
@@ -191,7 +191,11 @@ impl<'a> Work<'a> {
     }
 
     /// All pieces for each run of tiles, in batches whose combined rows take `most_rows` of their target at most.
-    pub fn batches(&self, most_tiles: usize, most_rows: usize) -> Result<Vec<Vec<Batch>>, RenderError> {
+    pub(super) fn batches(
+        &self,
+        most_tiles: usize,
+        most_rows: usize,
+    ) -> Result<Vec<Vec<Batch>>, RenderError> {
         let count = self.stage.shaded.len();
         let mut runs = Vec::new();
         for first in (0..count).step_by(most_tiles) {
@@ -274,7 +278,7 @@ impl<'a> Work<'a> {
     }
 
     /// The words of a batch.
-    pub fn script(&self, batch: &Batch) -> Script {
+    pub(super) fn script(&self, batch: &Batch) -> Script {
         let mut words = Words::default();
         let plan = self.plan;
         // Shelves: plane by plane, channel by channel, every channel with the same blocks.
@@ -375,7 +379,7 @@ impl<'a> Work<'a> {
     }
 
     /// Pieces of emitter `e`.
-    pub fn pieces(&self, e: usize) -> Range<usize> {
+    pub(super) fn pieces(&self, e: usize) -> Range<usize> {
         let at = |e: usize| self.plan.pieces.partition_point(|p| p.emitter < e);
         at(e)..at(e + 1)
     }
