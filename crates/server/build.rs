@@ -10,9 +10,17 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// What the pages are made of, in `web/`. `node_modules` is not watched: the lock file says what is in it.
-const SOURCES: [&str; 7] =
-    ["browsers.json", "build.mjs", "console", "package-lock.json", "package.json", "participant", "shared"];
+/// What the pages are made of, seen from `web/`. `node_modules` is not watched: the lock file says what is in it.
+const SOURCES: [&str; 8] = [
+    "browsers.json",
+    "build.mjs",
+    "console",
+    "package-lock.json",
+    "package.json",
+    "participant",
+    "shared",
+    "../crates/report/src/shared.css",
+];
 
 /// The two shells that every bundle has.
 const SHELLS: [&str; 2] = ["participant.html", "console.html"];

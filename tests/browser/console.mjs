@@ -1,7 +1,9 @@
-// Reads the researcher's console as a person would: signs in, opens the study, reads the table.
-// Argument (JSON): {base, study, shots, password}. Last line of output (JSON): {refused, blocks: {<id>: {t, p, text}}, complaints}.
+// Reads the researcher's console as a person would: signs in, opens the study, reads the report.
+// Argument (JSON): {base, study, shots, password}. Last line of output (JSON): {refused, blocks: {<title>: exact t}, missing, control, complaints}:
+// `missing` is what of the server's document is not on the page, `control` the same of a document with one section more.
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
+import { missing } from "../../web/test/browser/laid-out.mjs";
 import { launch } from "./chromium.mjs";
 
 const task = JSON.parse(process.argv[2]);
@@ -39,15 +41,13 @@ try {
     .waitFor();
   await shot("studies");
   await page.goto(`${task.base}/console/studies/${task.study}`);
-  const rows = page.locator('[data-testid^="block-"]');
+  const rows = page.locator("#report-who-preferred-what tbody tr");
   await rows.first().waitFor();
   await shot("study");
-  const blocks = {};
-  for (const row of await rows.all()) {
-    const id = (await row.getAttribute("data-testid")).slice("block-".length);
-    blocks[id] = { t: await row.getAttribute("data-t"), p: await row.getAttribute("data-p"), text: await row.innerText() };
-  }
-  answer = { refused, blocks, complaints };
+  const blocks = Object.fromEntries(await rows.evaluateAll((all) => all.map((row) => [row.cells[0].firstChild.textContent, row.cells[6].querySelector("data")?.value ?? null])));
+  const written = await page.evaluate(async (study) => (await fetch(`/api/v1/studies/${study}/versions/current/document`)).json(), task.study);
+  const extra = { ...written, sections: [...written.sections, { title: "One more", pieces: [], reference: false }] };
+  answer = { refused, blocks, missing: await page.evaluate(missing, written), control: await page.evaluate(missing, extra), complaints };
 } finally {
   await browser.close();
 }

@@ -156,7 +156,10 @@ fn a_report_says_what_the_answers_say_in_every_form() {
     );
     let embedded = download(&server, &format!("/api/v1/studies/{STUDY}/versions/current/report.md"));
     let markdown = write("report.md");
-    let figures = ["choices", "scale", "response-times", "errors"];
+    let distributions = PAPER.map(|(block, ..)| format!("distribution-{block}"));
+    let figures =
+        ["choices", "scale", "response-times", "errors"].map(str::to_owned).into_iter().chain(distributions);
+    let figures: Vec<String> = figures.collect();
     assert_eq!(embedded.matches("data:image/svg+xml;base64,").count(), figures.len());
     for figure in figures {
         let svg = std::fs::read_to_string(at(&format!("report-figures/{figure}.svg"))).unwrap();

@@ -112,22 +112,24 @@ fn three_participants_from_the_welcome_to_the_t_test() {
         "a wrong password is refused in words"
     );
     assert_eq!(page["complaints"], json!([]));
+    assert_eq!(page["missing"], json!([]), "the page has all that the report's document says");
+    assert_eq!(page["control"].as_array().unwrap().len(), 1, "and a section that it hasn't is missed");
     for (block, t) in &expected {
         let printed = stats["blocks"].as_array().unwrap().iter().find(|b| b["id"] == block.as_str()).unwrap();
-        let shown = &page["blocks"][block];
+        let shown = &page["blocks"][printed["title"].as_str().unwrap()];
         if t.is_finite() {
             assert!(
                 (printed["t"].as_f64().unwrap() - t).abs() < 1e-12 * t.abs().max(1.0),
                 "{block}: {printed} against {t}"
             );
-            let shown: f64 = shown["t"].as_str().unwrap().parse().unwrap();
+            let shown: f64 = shown.as_str().unwrap().parse().unwrap();
             assert!(
                 (shown - t).abs() < 1e-12 * t.abs().max(1.0),
                 "{block}: the page says {shown}, the rows {t}"
             );
         } else {
             // All three chose alike: t is not defined, and both places say so.
-            assert!(printed["t"].is_null() && printed["note"].is_string(), "{printed}");
+            assert!(printed["t"].is_null() && printed["note"].is_string() && shown.is_null(), "{printed}");
         }
     }
     // The choices above were made so that at least one block has a defined t.

@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. b2db050e6a2e55d797ef4bdd7b851e73e51268856b5276a394148d05845d7643 086086b18718ea00a2d171f0dfb746f37124f9b7b37d08ad03edf581965637c0
+// Generated from openapi.json by `npm run types`; do not edit. 552f9d98961cee5aabb09a1d6c94300ada89b74ef564b72b5933edf310e924c0 8b249ac958030d41fb8672f3f87d7df47ed59f085f8a71245d2ec468c29fb973
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -408,6 +408,23 @@ export interface paths {
         };
         /** What each column of `responses.csv` is. */
         get: operations["get_codebook"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies/{study}/versions/{version}/document": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The full report as it is written: sections of texts, tables and figures, the same as in the files of it. */
+        get: operations["get_document"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1227,6 +1244,15 @@ export interface components {
             /** @description Sizes [width, height] at which each stimulus is made, by rising width, in pixels; none: the study's `size` alone. */
             sizes?: number[][];
         };
+        /** @description A whole report. Every text in it is plain: writers escape. */
+        Document: {
+            /** @description From the top down. */
+            sections: components["schemas"]["Section"][];
+            /** @description Below the title: which study and version this is of. */
+            subtitle: string;
+            /** @description Over everything. */
+            title: string;
+        };
         /** @description What a participant downloads of a version at one of its sizes. */
         Download: {
             /**
@@ -1390,6 +1416,15 @@ export interface components {
             rule: string;
             /** @description What was found there, long texts cut; absent where the field is missing, or secret. */
             value?: unknown;
+        };
+        /** @description A picture. */
+        Figure: {
+            /** @description What is seen, and what dots and lines are. */
+            caption: string;
+            /** @description A name for a file, such as `choices`. */
+            name: string;
+            /** @description SVG with a title and a description: shapes and texts alone, no script, style, link or id; its ground is white. */
+            svg: string;
         };
         /** @description What a page does where there is more room than a size fills at one device pixel a stimulus pixel. */
         Fit: "native" | "integer" | "fill";
@@ -1865,6 +1900,38 @@ export interface components {
         };
         /** @description Picture files of one item: paths relative to the study file. */
         Pictures: string | string[];
+        /** @description Something in a section. */
+        Piece: {
+            /** @description A heading below the section's. */
+            content: string;
+            /** @enum {string} */
+            kind: "heading";
+        } | {
+            /** @description A paragraph. */
+            content: string;
+            /** @enum {string} */
+            kind: "text";
+        } | {
+            /** @description Something that nobody must overlook. */
+            content: string;
+            /** @enum {string} */
+            kind: "warning";
+        } | {
+            /** @description Sentences of equal rank. */
+            content: string[];
+            /** @enum {string} */
+            kind: "list";
+        } | {
+            /** @description Rows and columns. */
+            content: components["schemas"]["Table"];
+            /** @enum {string} */
+            kind: "table";
+        } | {
+            /** @description A picture. */
+            content: components["schemas"]["Figure"];
+            /** @enum {string} */
+            kind: "figure";
+        };
         /**
          * Format: int32
          * @description A length in whole pixels.
@@ -2229,6 +2296,15 @@ export interface components {
             min_rt_ms?: number | null;
             /** @description Whether choosing the same side in every one of at least five trials excludes the participant. */
             straight_lining: boolean;
+        };
+        /** @description A part with a heading. */
+        Section: {
+            /** @description What stands in it. */
+            pieces: components["schemas"]["Piece"][];
+            /** @description For the page and the paper, not for the terminal. */
+            reference: boolean;
+            /** @description Its heading. */
+            title: string;
         };
         /** @description Whose a session is. The analysis is of participants alone. */
         SessionKind: "participant" | "pilot" | "simulated";
@@ -2766,6 +2842,43 @@ export interface components {
              * @description (mean − mu) / (sd / √n).
              */
             t?: number | null;
+        };
+        /** @description Rows and columns. */
+        Table: {
+            /** @description What it holds. */
+            caption: string;
+            /** @description Heads of the columns. */
+            columns: components["schemas"]["TableColumn"][];
+            /** @description From the top down. */
+            rows: components["schemas"]["TableRow"][];
+        };
+        /** @description A place in a table. */
+        TableCell: {
+            /** @description The numbers behind it in full precision, space-separated; null where it is no number. */
+            exact?: string | null;
+            /** @description In smaller letters below; null for nothing. */
+            note?: string | null;
+            /** @description What is read. */
+            shown: string;
+        };
+        /** @description The head of a column. */
+        TableColumn: {
+            /** @description What stands in it, with its unit. */
+            name: string;
+            /** @description Whether it holds numbers, set to the right. */
+            numeric: boolean;
+        };
+        /** @description A line of a table. */
+        TableRow: {
+            /** @description A name for the rows that follow. */
+            content: string;
+            /** @enum {string} */
+            kind: "group";
+        } | {
+            /** @description One cell a column. */
+            content: components["schemas"]["TableCell"][];
+            /** @enum {string} */
+            kind: "cells";
         };
         /** @description What every page says of how a trial was taken. A stimulus pixel is one of the picture, a device pixel one of the display, a CSS pixel one of the page. */
         Taken: components["schemas"]["Geometry"] & {
@@ -5193,6 +5306,98 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Codebook"];
+                };
+            };
+            /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "invalid_parameter" | "ambiguous_version";
+                    };
+                };
+            };
+            /** @description `unauthorized`: The request holds no valid sign-in, or no token of this session. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unauthorized";
+                    };
+                };
+            };
+            /** @description `not_found`: There is nothing of this name. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "not_found";
+                    };
+                };
+            };
+            /** @description `internal`: Something is wrong on the server; its log has the reason. */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "internal";
+                    };
+                };
+            };
+            /** @description `unavailable`: The server cannot store or read just now; `detail` says why, `Retry-After` when to ask again. */
+            503: {
+                headers: {
+                    /** @description Seconds to wait before asking again. */
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"] & {
+                        /** @enum {string} */
+                        code: "unavailable";
+                    };
+                };
+            };
+        };
+    };
+    get_document: {
+        parameters: {
+            query?: {
+                /** @description Versions whose answers count with the named one's, separated by commas, each as in the address; `all`: every other version's. */
+                with?: string;
+                /** @description Kinds of sessions that are judged like participants': `pilot`, `simulated` or both, separated by a comma. */
+                include?: string;
+            };
+            header?: never;
+            path: {
+                /** @description The study's id. */
+                study: string;
+                /** @description The version: `current`, its hash, or the beginning of the hash, 8 digits or more. */
+                version: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The document. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Document"];
                 };
             };
             /** @description `invalid_parameter`: A part of the address or a parameter after `?` breaks its rule. `ambiguous_version`: More than one version's hash begins like that. */

@@ -7,23 +7,16 @@ export type Participants = Schemas["Participants"];
 export type StudySummary = Schemas["StudySummary"];
 export type StudyVersion = Schemas["StudyVersion"];
 export type Results = Schemas["StudyResults"];
-export type Report = Schemas["StudyReport"];
-/** A block's choices of the target per participant, and the paper's test of them. */
-export type Block = Schemas["BlockSummary"];
-export type BlockReport = Schemas["BlockReport"];
+/** A report as it is written. */
+export type Report = Schemas["Document"];
+export type Section = Schemas["Section"];
+export type Table = Schemas["Table"];
 export type Stimulus = Schemas["Stimulus"];
-export type Interval = Schemas["Interval"];
-export type Proportion = Schemas["Proportion"];
-export type Coefficient = Schemas["Coefficient"];
-/** The paper's tests, computed again. */
-export type Paper = Schemas["Replication"];
-export type Comparison = Schemas["Comparison"];
 
 const v1 = "/api/v1";
 
 export const login = (password: string) => request<void>(`${v1}/auth/session`, { method: "POST", body: { password } satisfies Schemas["SignIn"] });
 export const logout = () => request<void>(`${v1}/auth/session`, { method: "DELETE" });
-export const fetchPaper = () => request<Paper>(`${v1}/papers/taylor-cameron`);
 /** What is damaged of all that the server stores. */
 export const fetchIntegrity = () => request<Schemas["IntegrityReport"]>(`${v1}/integrity`);
 export const fetchStudies = () => all<StudySummary>(`${v1}/studies`);
@@ -44,7 +37,7 @@ export interface Selection {
 
 type Ending =
   | "results"
-  | "report"
+  | "document"
   | "report.html"
   | "report.md"
   | "responses.csv"
@@ -63,7 +56,7 @@ export function addressOf({ study, version, pooled }: Selection, ending: Ending)
 }
 
 export const fetchResults = (selection: Selection) => request<Results>(addressOf(selection, "results"));
-export const fetchReport = (selection: Selection) => request<Report>(addressOf(selection, "report"), { timeoutMs: 120_000 });
+export const fetchReport = (selection: Selection) => request<Report>(addressOf(selection, "document"), { timeoutMs: 120_000 });
 
 /** A list's items, page by page. */
 async function all<Item>(address: string): Promise<Item[]> {

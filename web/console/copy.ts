@@ -18,7 +18,8 @@ export function copyButton(label: string, text: () => string, attributes: Record
 export function tableText(table: HTMLTableElement): string {
   const cell = (td: HTMLTableCellElement) => {
     const exact = [...td.querySelectorAll<HTMLDataElement>("data.copy")].map((data) => data.value);
-    return exact.length > 0 ? exact.join(" ") : (td.textContent?.trim() ?? "");
+    const words = [...td.childNodes].map((node) => (node instanceof Element && node.classList.contains("note") ? ` (${node.textContent})` : node.textContent));
+    return exact.length > 0 ? exact.join(" ") : words.join("").trim();
   };
   return [...table.rows].map((row) => [...row.cells].map(cell).join("\t")).join("\n");
 }

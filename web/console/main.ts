@@ -14,12 +14,16 @@ document.body.append(header, main);
 const signOut = h("button", { type: "button", class: "link", onclick: () => void leave() }, "Sign out");
 const warning = h("aside", { class: "problem", role: "status", "aria-label": "Integrity" });
 let shown = new AbortController();
+/** The page that is shown, without its fragment. */
+let page = "";
+const asked = () => location.pathname + location.search;
 
 /** Shows what the address says. */
 async function show(): Promise<void> {
   shown.abort();
   shown = new AbortController();
   const { signal } = shown;
+  page = asked();
   const path = location.pathname.replace(/\/+$/, "");
   const study = path.match(/^\/console\/studies\/([^/]+)$/)?.[1];
   try {
@@ -154,9 +158,11 @@ document.addEventListener("click", (event) => {
   const plain = event.button === 0 && !event.metaKey && !event.ctrlKey && !event.shiftKey && !event.altKey;
   if (anchor === null || !plain || anchor.target !== "" || anchor.hasAttribute("download")) return;
   if (anchor.origin !== location.origin || !/^\/console(\/|$)/.test(anchor.pathname)) return;
+  // To a part of this page the browser goes by itself.
+  if (anchor.hash !== "" && anchor.pathname + anchor.search === page) return;
   event.preventDefault();
   go(anchor.pathname + anchor.search + anchor.hash);
 });
 copyOnClick();
-addEventListener("popstate", () => void show());
+addEventListener("popstate", () => asked() !== page && void show());
 void show();

@@ -2,12 +2,10 @@
 import { h } from "../shared/dom.ts";
 import { clockTime, count, fixed } from "../shared/format.ts";
 import { isTemporary, Refused } from "../shared/http.ts";
-import { addressOf, fetchPaper, fetchReport, fetchResults, fetchStudies, fetchVersions, makeLink, type Results, type Selection, type StudySummary, type StudyVersion } from "./api.ts";
-import { choices } from "./choices.ts";
+import { addressOf, fetchReport, fetchResults, fetchStudies, fetchVersions, makeLink, type Report, type Results, type Selection, type StudySummary, type StudyVersion } from "./api.ts";
 import { copyButton, number } from "./copy.ts";
+import { layOut, nameOf } from "./document.ts";
 import { gallery } from "./gallery.ts";
-import { drawPaper, PAPER_STUDY } from "./paper.ts";
-import { drawReport } from "./report.ts";
 import { statusText } from "./status.ts";
 import { pooledBanner, selectionOf, short, VersionList } from "./versions.ts";
 
@@ -41,28 +39,48 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
   const body = h("div", { class: "study" });
 
   /** Draws a section again only when its data have changed, so that a refresh disturbs nobody. */
-  const section = (name: string, data: unknown, draw: () => Array<Node | string>) => {
+  const section = (name: string, data: unknown, draw: () => Array<Node | string>, into: Element = body) => {
     const shown = JSON.stringify(data);
     const known = sections.get(name);
-    if (known?.shown === shown) return;
-    const element = known?.element ?? body.appendChild(h("section", { class: name }));
+    if (known?.shown === shown) return known.element;
+    const element = known?.element ?? into.appendChild(h("section", { class: name, id: name }));
     element.replaceChildren(...draw());
     sections.set(name, { shown, element });
+    return element;
   };
 
-  // The full report resamples participants, which takes the server a while: it is asked for only when answers have come.
-  const report = h("section", { class: "report" }, h("h2", {}, "Beyond the t-test"), h("p", { class: "quiet" }, "Resampling participants; this takes a moment."));
+  // The report resamples participants, which takes the server a while: it is asked for only when something has changed, and once at a time.
+  const contents = h("nav", { class: "contents", "aria-label": "On this page" });
+  const report = h("div", { class: "report" }, h("p", { class: "quiet", role: "status" }, "Resampling participants; this takes a moment."));
   let judged = "";
+  let judging = false;
   let list: VersionList | null = null;
-  const judge = (selection: Selection, results: Results) => {
-    const answers = JSON.stringify([results.blocks, results.stimuli, results.pooled]);
-    if (answers === judged) return;
-    judged = answers;
-    if (!report.isConnected) body.append(report);
-    fetchReport(selection).then(
-      (found) => !signal.aborted && report.replaceChildren(...drawReport(found, Math.min(760, Math.max(280, body.clientWidth)))),
-      () => (judged = ""), // asked for again at the next look
-    );
+  const judge = async (selection: Selection, results: Results) => {
+    const answers = JSON.stringify(results);
+    if (judging || answers === judged) return;
+    judging = true;
+    try {
+      const found = await fetchReport(selection);
+      if (signal.aborted) return;
+      const first = judged === "";
+      judged = answers;
+      write(found);
+      if (first) document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
+    } catch (error) {
+      // Asked for again at the next look; what is there stays.
+      if (judged === "") report.replaceChildren(h("p", { class: "empty" }, `The report could not be made: ${error instanceof Error ? error.message : error} It is asked for again in a moment.`));
+    } finally {
+      judging = false;
+    }
+  };
+  const write = ({ subtitle, sections: parts }: Report) => {
+    const about = section("report-about", subtitle, () => [h("p", { class: "quiet" }, subtitle)], report);
+    const drawn = [about, ...parts.map((part) => section(nameOf(part), part, () => layOut(part), report))];
+    const inOrder = drawn.length === report.children.length && drawn.every((element, i) => report.children[i] === element);
+    if (!inOrder) report.replaceChildren(...drawn);
+    const links = contentsOf(body);
+    const named = (nodes: Iterable<Node>) => Array.from(nodes, ({ textContent }) => textContent).join("\n");
+    if (named(links) !== named(contents.children)) contents.replaceChildren(...links);
   };
 
   const draw = ({ summary, versions, selection, results }: Seen) => {
@@ -83,11 +101,11 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
       },
     );
     list?.recount(versions);
-    section("participants", [results?.participants, results?.standing, results?.excluded], () => participants(results));
+    section("participants", [results?.participants], () => participants(results));
     if (results !== null) {
-      const { blocks, scale, standing, stimuli, different_stimuli, display, downloads } = results;
-      section("choices", [blocks, scale, standing.summary], () => choices(results));
-      judge(selection, results);
+      const { stimuli, different_stimuli, display, downloads } = results;
+      if (!report.isConnected) body.append(contents, report);
+      void judge(selection, results);
       section("stimuli", [stimuli, different_stimuli, display, downloads], () => [
         h("h2", {}, "Stimuli"),
         h("p", { class: "quiet", "data-testid": "display" }, display),
@@ -104,16 +122,6 @@ export async function showStudy(root: HTMLElement, { id, search, go, signal }: A
   draw(await look());
   if (signal.aborted) return;
   root.replaceChildren(updated, body);
-  if (id === PAPER_STUDY) {
-    const paper = h("section", { class: "paper" });
-    fetchPaper().then(
-      (found) => {
-        paper.replaceChildren(...drawPaper(found));
-        body.lastElementChild?.before(paper);
-      },
-      () => undefined, // the study's own numbers are what one came for
-    );
-  }
 
   const refresh = async () => {
     if (document.hidden || signal.aborted) return;
@@ -203,15 +211,12 @@ function rehearsal(study: string): HTMLElement {
   );
 }
 
+/** How many take part just now. Who of them is judged, and why not, the report says. */
 function participants(results: Results | null): Node[] {
   const { started, in_progress, completed } = results?.participants ?? { started: 0, in_progress: 0, completed: 0 };
   const figure = (n: number, label: string, testid: string) => h("div", { class: "figure" }, h("strong", { "data-testid": testid }, number(n.toLocaleString("en"), n)), h("span", {}, label));
-  const heading = h("h2", {}, "Participants");
-  const summary = h("p", { "data-testid": "standing" }, results?.standing.summary ?? "0 began.");
   const begin = "Send people the link above; to try the study yourself, use Preview.";
-  if (started === 0) return [heading, summary, h("p", { class: "empty" }, begin), ...leftOut(results)];
   return [
-    heading,
     h(
       "div",
       { class: "figures" },
@@ -219,32 +224,14 @@ function participants(results: Results | null): Node[] {
       figure(in_progress, "in progress", "participants-in-progress"),
       figure(started, "started", "participants-started"),
     ),
-    summary,
-    ...leftOut(results),
+    ...(started === 0 ? [h("p", { class: "empty" }, begin)] : []),
   ];
 }
 
-/** Who is not judged and why, and what was noticed of sessions. */
-function leftOut(results: Results | null): Node[] {
-  if (results === null) return [];
-  const { excluded, standing } = results;
-  const session = (id: string) => number(id.slice(0, 13), id);
-  const list = (title: string, items: Node[]) => (items.length === 0 ? [] : [h("details", {}, h("summary", {}, title), h("ul", {}, ...items))]);
-  return [
-    ...list(
-      `${excluded.length} left out by your rules`,
-      excluded.map(({ session_id, why }) => h("li", {}, session(session_id), `: ${why}`)),
-    ),
-    ...list(
-      `${count(standing.repeated.length, "session")} of persons who had taken part before`,
-      standing.repeated.map(({ session_id, counted }) => h("li", {}, session(session_id), ": ", session(counted), " counts")),
-    ),
-    ...list(
-      "What was noticed of sessions",
-      standing.flagged.map(({ flag, meaning, sessions, excludes }) => h("li", {}, h("code", {}, flag), `: ${count(sessions, "session")}, ${meaning}${excludes ? "; left out by your rules" : ""}`)),
-    ),
-    ...(standing.balance_summary === "" ? [] : [h("p", { class: "quiet", "data-testid": "balance" }, standing.balance_summary)]),
-  ];
+/** Links to the parts of the page. */
+function contentsOf(body: Element): Node[] {
+  const headings = [...body.querySelectorAll("section[id] > h2")];
+  return headings.map((heading) => h("a", { href: `#${encodeURIComponent(heading.parentElement?.id ?? "")}` }, heading.textContent));
 }
 
 /** What participants download, and what can be done where that is much. */

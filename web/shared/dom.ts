@@ -22,11 +22,6 @@ export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Rec
   return dress(document.createElement(tag), attributes, children);
 }
 
-/** An SVG element, in the same way. */
-export function s<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, Value> = {}, ...children: Child[]): SVGElementTagNameMap[K] {
-  return dress(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
-}
-
 /** One `<p>` for each paragraph. */
 export function paragraphs(texts: readonly string[]): HTMLParagraphElement[] {
   return texts.map((text) => h("p", {}, text));

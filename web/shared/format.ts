@@ -25,16 +25,6 @@ export function significant(x: number | null | undefined, digits = 3): string {
   return `${signed(mantissa)} × 10${superscript(Number(exponent))}`;
 }
 
-/** A p-value: three decimals, or three significant digits below a thousandth. */
-export function pValue(p: number | null | undefined): string {
-  return p !== null && p !== undefined && p >= 0.001 ? fixed(p, 3) : significant(p);
-}
-
-/** An interval, "0.55 to 1.08". */
-export function interval(low: number | null | undefined, high: number | null | undefined, decimals: number): string {
-  return low === null || low === undefined || high === null || high === undefined ? MISSING : `${fixed(low, decimals)} to ${fixed(high, decimals)}`;
-}
-
 /** "1 participant", "2 participants". */
 export function count(n: number, one: string, many = `${one}s`): string {
   return `${n.toLocaleString("en")} ${n === 1 ? one : many}`;

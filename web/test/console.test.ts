@@ -1,12 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { addressOf, type BlockReport, type Stimulus, type StudySummary, type StudyVersion } from "../console/api.ts";
+import { addressOf, type Stimulus, type StudySummary, type StudyVersion } from "../console/api.ts";
+import { nameOf } from "../console/document.ts";
 import { smallest } from "../console/gallery.ts";
-import { type Box, placed } from "../console/labels.ts";
 import { flatten, measuredError, standardError } from "../console/provenance.ts";
-import { points } from "../console/scatter.ts";
 import { statusText } from "../console/status.ts";
-import { niceTicks } from "../console/strips.ts";
 import { pageOf, selectionOf } from "../console/versions.ts";
 
 const stimulus = (item: string, condition: string, rmse: number | null): Stimulus => {
@@ -14,53 +12,16 @@ const stimulus = (item: string, condition: string, rmse: number | null): Stimulu
   const error = rmse === null ? null : { reference: { technique: "mc" }, frames: [0], all: { ...errors, rmse: 1 }, penumbra: errors, floor: null };
   return { item, condition, size: [592, 333], sha256: "0", pixels_sha256: "0", provenance: { error } };
 };
-const block = (pair: string, chosen: number): BlockReport =>
-  ({
-    ...{ id: "b", target: "pa", conditions: ["pa", "mc"] },
-    by_item: [{ id: pair, target: { chosen, trials: 32, proportion: chosen / 32, wilson: { low: 0.1, high: 0.4 }, by_participant: null } }],
-  }) as unknown as BlockReport;
-
-test("who did not prefer the target preferred the other, interval and all", () => {
-  const [pa, mc] = points([block("a", 8)], [stimulus("a", "pa", 1e-3), stimulus("a", "mc", 2e-4)]);
-  assert.deepEqual([pa?.share, pa?.interval, pa?.error], [0.25, { low: 0.1, high: 0.4 }, 1e-3]);
-  assert.deepEqual([mc?.share, mc?.interval, mc?.error], [0.75, { low: 0.6, high: 0.9 }, 2e-4]);
-});
-
-test("stimuli without a measured error, of other pairs or of unknown conditions have no point", () => {
-  const none = [stimulus("a", "pa", null), stimulus("z", "pa", 1), stimulus("a", "oracle", 1), stimulus("a", "mc", 0)];
-  assert.deepEqual(points([block("a", 8)], none), []);
-  assert.equal(points([block("a", 8)], [...none, stimulus("a", "mc", 1)]).length, 1);
+test("a section's name in an address is its title, whatever that is written in", () => {
+  assert.deepEqual(
+    ["In short", "With and without the excluded", "Größe & <b>", "影"].map((title) => nameOf({ title })),
+    ["report-in-short", "report-with-and-without-the-excluded", "report-größe-b-", "report-影"],
+  );
 });
 
 test("what is drawn at several sizes is told once, at the smallest", () => {
   const [a, b, c] = [stimulus("a", "pa", 1e-3), { ...stimulus("a", "pa", 2e-3), size: [1110, 624] }, { ...stimulus("a", "mc", 1e-3), size: [1110, 624] }];
   assert.deepEqual(smallest([b, a, c]), [a, c]);
-});
-
-test("names hide no mark, no interval and no other name, also where points crowd; a line leads to those that stand away", () => {
-  // Four pairs within 25 px at one share, their intervals half the plot high: as the built-in study looks after six participants.
-  const points = [356, 367, 376, 380, 473].map((x) => ({ x, y: 205, width: 80 }));
-  const marks = points.flatMap(({ x, y }) => [
-    { left: x - 8, right: x + 8, top: y - 8, bottom: y + 8 },
-    { left: x - 3, right: x + 3, top: 120, bottom: 290 },
-  ]);
-  const labels = placed(points, marks, { left: 46, right: 746, top: 58, bottom: 338 });
-  const apart = (a: Box, b: Box) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
-  labels.forEach(({ box }, i) => {
-    for (const other of [...marks, ...labels.slice(i + 1).map((label) => label.box)]) assert.ok(apart(box, other), JSON.stringify([box, other]));
-  });
-  assert.deepEqual([labels[0]?.led, labels[1]?.led, labels[4]?.led], [false, true, false]);
-});
-
-test("a name whose side is at the plot's edge stands on the other", () => {
-  const [label] = placed([{ x: 700, y: 205, width: 80 }], [], { left: 46, right: 746, top: 58, bottom: 338 });
-  assert.deepEqual([label?.anchor, label?.led, label?.box.right], ["end", false, 688]);
-});
-
-test("ticks are round and reach the largest value", () => {
-  assert.deepEqual(niceTicks(8.8), [0, 2, 4, 6, 8, 10]);
-  assert.deepEqual(niceTicks(0.98, 3), [0, 0.5, 1]);
-  for (const most of [0.001, 0.3, 1, 7, 99, 1234]) assert.ok((niceTicks(most).at(-1) ?? 0) >= most, String(most));
 });
 
 test("provenance is read to its leaves, and what is null is left out", () => {

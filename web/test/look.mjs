@@ -103,7 +103,7 @@ async function console_(name, options, scheme) {
     ["pooled", pooled],
   ]) {
     await page.goto(`${mock.url}/console/studies/${id}`);
-    await page.getByText("Participants").first().waitFor();
+    await page.locator(".report h2").first().waitFor();
     await page.waitForTimeout(1000);
     await shot(`3-study-${label}`, true);
     if (label === "pooled") await shot("4-pooled-top");

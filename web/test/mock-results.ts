@@ -1,6 +1,7 @@
-// The researcher's routes of the mock server: the source paper's counts in three versions of one study, and a study that nobody has taken yet.
+// The researcher's routes of the mock server: three versions of one study, its report as Rust writes one of the source paper's counts, and a study
+// that nobody has taken yet.
+import { readFileSync } from "node:fs";
 import type { components } from "../api/schema.ts";
-import { judged, paper, scale, unjudged } from "./mock-blocks.ts";
 import { problem, type Results } from "./mock-server.ts";
 import { type Material, study } from "./mock-study.ts";
 
@@ -76,9 +77,16 @@ function chosen(id: string, asked: string, pooledWith: string | null) {
   };
 }
 
-const screening: Schemas["Screening"] = { incomplete: false, max_fast_trials: 1, straight_lining: true };
-const { trial_kinds: _, ...words } = { ...study, trial_kinds: [] };
-const design: Schemas["StudyDefinition"] = { ...words, seed: 1, idle_minutes: 30, completion: {}, conditions: {}, blocks: [], screening };
+/** A report as it is written: `crates/report` holds this file to it. */
+export const written: Schemas["Document"] = JSON.parse(readFileSync(new URL("document.json", import.meta.url), "utf8"));
+const nobody: Schemas["Section"] = {
+  title: "In short",
+  pieces: [
+    { kind: "heading", content: "Found" },
+    { kind: "list", content: ["0 began."] },
+  ],
+  reference: false,
+};
 const standing = (taken: boolean): Schemas["Standing"] => ({
   summary: taken ? "41 began, 32 completed, 3 in progress, 1 left out by your rules, 31 judged." : "0 began.",
   judged: taken ? 31 : 0,
@@ -111,7 +119,6 @@ export const results =
       const page: Schemas["StudyList"] = { items: studies.slice(at, at + 1), next_cursor: at + 1 < studies.length ? String(at + 1) : null };
       return [200, page];
     }
-    if (path === "/api/v1/papers/taylor-cameron") return [200, paper()];
     const [, id = "", rest = ""] = path.match(/^\/api\/v1\/studies\/([^/]+)\/versions(\/.+)?$/) ?? [];
     const found = studies.find((s) => s.id === id);
     if (found === undefined) return null;
@@ -123,7 +130,6 @@ export const results =
     const choice = chosen(id, asked, query.get("with"));
     if (choice === null) return problem(404, "not_found", "There is no such version.");
     const taken = choice.participants.started > 0;
-    const blocks = taken ? judged : unjudged;
     const common = { study: id, title: found.title, ...choice, standing: standing(taken), stimuli: taken ? stimuliOf(stuff) : [] };
     if (what === "results") {
       const reply: Schemas["StudyResults"] = {
@@ -133,24 +139,14 @@ export const results =
           { size: [592, 333], bytes: 4_800_000, is_heavy: false },
           { size: [1008, 567], bytes: 13_900_000, is_heavy: true },
         ],
-        excluded: [],
-        blocks,
+        excluded: taken ? excluded : [],
+        blocks: [],
       };
       return [200, reply];
     }
-    if (what === "report") {
-      const methods = [
-        "Participants saw 5 pairs of stimuli in 3 blocks and had to choose one of each pair.",
-        "Effect sizes are Cohen's d and Hedges' g with 95% intervals from the noncentral t distribution.",
-      ];
-      const reply: Schemas["StudyReport"] = {
-        ...common,
-        ...{ shown: [], blocks, methods, references: [], screening, design, question: study.question, kelir_version: "0.1.0" },
-        excluded: taken ? excluded : [],
-        blocks_with_excluded: taken ? judged : null,
-        ...(taken ? { scale, scale_note: null } : { scale: null, scale_note: "No scale: no choices." }),
-        chain: { rows: 161, head: "ab12".padEnd(64, "7"), faults: [], blanked: 0 },
-      };
+    if (what === "document") {
+      const subtitle = `Report of the study ${id}, version ${choice.version.slice(0, 12)}, by kelir 0.1.0`;
+      const reply: Schemas["Document"] = { title: found.title, subtitle, sections: taken ? written.sections : [nobody] };
       return [200, reply];
     }
     return null;

@@ -36,7 +36,7 @@ fn main() -> Result<(), kelir_plot::PlotError> {
                 .collect(),
             line: true,
             markers: true,
-            dashed: false,
+            ..Series::default()
         };
         Figure {
             title: "Error against time, benchmark, 960×540".into(),

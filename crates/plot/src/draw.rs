@@ -163,6 +163,11 @@ impl Layout {
     fn data(&self, figure: &Figure) -> Group {
         let mut group = Group::new();
         let mut names: Vec<(f64, &str, &str)> = Vec::new();
+        // The bars lie below the reference lines, which are told in their height.
+        for (k, series) in figure.series.iter().enumerate().filter(|(_, series)| series.bars) {
+            group = group.add(self.bars(series, PALETTE[k % PALETTE.len()]));
+        }
+        let mut upright = 0.0;
         for rule in &figure.rules {
             match rule {
                 Rule::Horizontal(at, name) => {
@@ -172,9 +177,14 @@ impl Layout {
                 }
                 Rule::Vertical(at, name) => {
                     let at = self.column(self.x.place(*at));
+                    // Each on a line of its own, and to the left where the page ends.
+                    let fits = at + 5.0 + text_width(name) < f64::from(figure.size[0]);
+                    let (beside, anchor) = if fits { (at + 5.0, "start") } else { (at - 5.0, "end") };
+                    let height = self.top + 8.0 + upright * (FONT_PX + 3.0);
+                    upright += 1.0;
                     group = group
-                        .add(dashed(line(&[(at, self.top), (at, self.bottom)], INK, 1.2)))
-                        .add(text(name, (at + 5.0, self.top + 8.0), "start", INK));
+                        .add(dashed(line(&[(at, height - 8.0), (at, self.bottom)], INK, 1.2)))
+                        .add(text(name, (beside, height), anchor, INK));
                 }
             }
         }
@@ -195,10 +205,17 @@ impl Layout {
         })
     }
 
-    /// The points' own labels, none over another.
+    /// The points' own labels: bars' above them, over what crosses there; the others' beside their points, none over another.
     fn labels(&self, figure: &Figure, group: Group) -> Group {
+        let bars = figure.series.iter().filter(|series| series.bars).flat_map(|series| &series.points);
+        let group = bars.fold(group, |group, point| {
+            let (x, y) = self.place(point);
+            let label = point.label.as_deref().unwrap_or_default();
+            group.add(haloed(text(label, (x, y - 9.0), "middle", INK)))
+        });
         let all =
             figure.series.iter().enumerate().flat_map(|(k, s)| s.points.iter().map(move |point| (k, point)));
+        let all = all.filter(|(k, _)| !figure.series[*k].bars);
         let all: Vec<(usize, &Point)> =
             all.filter(|(k, p)| p.label.is_some() || figure.series[*k].markers).collect();
         let width = |point: &Point| point.label.as_deref().map_or(0.0, text_width);
@@ -213,6 +230,16 @@ impl Layout {
         all.iter().zip(found).fold(group, |group, ((k, point), at)| match &point.label {
             Some(label) => group.add(text(label, at, "start", PALETTE[k % PALETTE.len()])),
             None => group,
+        })
+    }
+
+    fn bars(&self, series: &Series, colour: &str) -> Group {
+        let width = (0.62 * (self.column(1.0) - self.column(0.0))).min(64.0);
+        series.points.iter().fold(Group::new(), |group, point| {
+            let (x, y) = self.place(point);
+            let bar = Rectangle::new().set("x", px(x - width / 2.0)).set("y", px(y));
+            let bar = bar.set("width", px(width)).set("height", px(self.bottom - y));
+            group.add(bar.set("fill", colour))
         })
     }
 
@@ -261,6 +288,11 @@ pub(crate) fn line(places: &[Place], colour: &str, width: f64) -> Path {
     Path::new().set("d", outline(places)).set("fill", "none").set("stroke", colour).set("stroke-width", width)
 }
 
+/// Readable over a line: the ground shows around its letters.
+fn haloed(text: Text) -> Text {
+    text.set("stroke", "#fff").set("stroke-width", 4).set("paint-order", "stroke")
+}
+
 pub(crate) fn dashed(line: Path) -> Path {
     line.set("stroke-dasharray", "6 4")
 }
@@ -306,7 +338,7 @@ mod tests {
             points: points(k).collect(),
             line: true,
             markers: true,
-            dashed: false,
+            ..Series::default()
         };
         Figure {
             title: "error & time <x>".into(),
@@ -353,6 +385,36 @@ mod tests {
         bad.series[0].points[0].x = 0.0;
         assert_eq!(svg(&bad), Err(PlotError::NotPositive { what: "PA[0].x".into(), value: 0.0 }));
         assert_eq!(svg(&Figure { size: [10, 10], ..figure() }), Err(PlotError::Size(10, 10)));
+    }
+
+    #[test]
+    fn a_bar_is_as_high_as_its_number_and_lines_are_named_apart() {
+        let bar = |x: f64, y: f64| Point { x, y, interval: None, label: Some(y.to_string()) };
+        let figure = Figure {
+            title: "counts".into(),
+            x: Axis::names("choices", ["0", "1", "2"].map(String::from).to_vec()),
+            y: Axis::linear("participants").within(0.0, 28.0),
+            series: vec![Series {
+                points: vec![bar(0.0, 12.0), bar(1.0, 14.0), bar(2.0, 0.0)],
+                bars: true,
+                ..Series::default()
+            }],
+            rules: vec![Rule::Vertical(1.9, "mean 1.9".into()), Rule::Vertical(2.0, "a long name".into())],
+            size: [300, 240],
+        };
+        let document = svg(&figure).expect("finite");
+        let attribute = |tag: &str, name: &str| -> f64 {
+            let rest = tag.split(&format!("{name}=\"")).nth(1).expect(name);
+            rest.split('"').next().expect("quoted").parse().expect("a number")
+        };
+        // The first rectangle is the ground.
+        let bars: Vec<f64> = document.split("<rect").skip(2).map(|tag| attribute(tag, " height")).collect();
+        assert_eq!(bars.len(), 3);
+        assert!((bars[0] / bars[1] - 12.0 / 14.0).abs() < 0.01 && bars[2] == 0.0, "{bars:?}");
+        let texts: Vec<&str> = document.split("<text").collect();
+        let named = |name: &str| texts.iter().find(|t| t.contains(name)).copied().expect(name);
+        assert!(attribute(named("a long name"), " y") > attribute(named("mean 1.9"), " y") + FONT_PX);
+        assert!(named("a long name").contains("\"end\""), "what would leave the page stands to the left");
     }
 
     #[test]

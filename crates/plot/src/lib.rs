@@ -38,6 +38,8 @@ pub struct Series {
     pub markers: bool,
     /// The line is dashed.
     pub dashed: bool,
+    /// A bar from the axis's lower end to each point, its label above it; for points one apart.
+    pub bars: bool,
 }
 
 /// A reference line right across the figure.

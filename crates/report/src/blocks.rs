@@ -22,6 +22,7 @@ pub(crate) fn section(block: &BlockReport) -> Section {
         return Section::new(title(block), pieces);
     }
     pieces.extend(block.analysis.notes.iter().map(|note| Piece::Warning(sentence(note))));
+    pieces.extend(figures::distribution(block));
     pieces.push(Piece::Table(table("", &of_block(Sample::Screened, block))));
     if let Some(found) = &block.psychometric {
         pieces.push(Piece::Heading("Psychometric function".to_owned()));

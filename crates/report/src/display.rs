@@ -53,7 +53,7 @@ pub(crate) fn pieces(report: &StudyReport) -> Vec<Piece> {
         Some([low, high]) if low == high => Cell::number(plain(low), low),
         Some([low, high]) => Cell {
             shown: format!("{} to {}", plain(low), plain(high)),
-            exact: Some(format!("{low} to {high}")),
+            exact: Some(format!("{low} {high}")),
             note: None,
         },
     };

@@ -1,9 +1,11 @@
 //! A report as sections of paragraphs, tables and figures: what is said, whoever writes it down.
 
 use crate::{StudyReport, sections};
+use serde::Serialize;
+use utoipa::ToSchema;
 
 /// A whole report. Every text in it is plain: writers escape.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Document {
     /// Over everything.
     pub title: String,
@@ -14,7 +16,7 @@ pub struct Document {
 }
 
 /// A part with a heading.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Section {
     /// Its heading.
     pub title: String,
@@ -25,7 +27,8 @@ pub struct Section {
 }
 
 /// Something in a section.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(tag = "kind", content = "content", rename_all = "snake_case")]
 pub enum Piece {
     /// A heading below the section's.
     Heading(String),
@@ -42,7 +45,7 @@ pub enum Piece {
 }
 
 /// Rows and columns.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
 pub struct Table {
     /// What it holds.
     pub caption: String,
@@ -53,7 +56,8 @@ pub struct Table {
 }
 
 /// The head of a column.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = TableColumn)]
 pub struct Column {
     /// What stands in it, with its unit.
     pub name: String,
@@ -62,7 +66,9 @@ pub struct Column {
 }
 
 /// A line of a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(tag = "kind", content = "content", rename_all = "snake_case")]
+#[schema(as = TableRow)]
 pub enum Row {
     /// A name for the rows that follow.
     Group(String),
@@ -71,24 +77,25 @@ pub enum Row {
 }
 
 /// A place in a table.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[schema(as = TableCell)]
 pub struct Cell {
     /// What is read.
     pub shown: String,
-    /// The numbers behind it in full precision, space-separated.
+    /// The numbers behind it in full precision, space-separated; null where it is no number.
     pub exact: Option<String>,
-    /// In smaller letters below.
+    /// In smaller letters below; null for nothing.
     pub note: Option<String>,
 }
 
 /// A picture.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Figure {
     /// A name for a file, such as `choices`.
     pub name: String,
     /// What is seen, and what dots and lines are.
     pub caption: String,
-    /// SVG.
+    /// SVG with a title and a description: shapes and texts alone, no script, style, link or id; its ground is white.
     pub svg: String,
 }
 
@@ -154,6 +161,11 @@ impl Cell {
 
     pub(crate) fn whole(n: u64) -> Cell {
         Cell { shown: n.to_string(), exact: Some(n.to_string()), note: None }
+    }
+
+    /// A number and its interval as shown, with the three behind them.
+    pub(crate) fn estimate(shown: impl Into<String>, value: f64, low: f64, high: f64) -> Cell {
+        Cell { shown: shown.into(), exact: Some(format!("{value} {low} {high}")), note: None }
     }
 
     /// A number that may be missing.

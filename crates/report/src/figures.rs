@@ -63,6 +63,41 @@ fn interval_of(found: &Proportion) -> Interval {
     resampled.map_or(found.wilson, |b| Interval { low: b.low, high: b.high, level: b.level })
 }
 
+/// Most bars that are named one by one.
+const MOST_NAMED: usize = 20;
+
+/// How many participants of a block chose its target how often. `None` without answers.
+pub(crate) fn distribution(block: &BlockReport) -> Option<Piece> {
+    let summary = &block.summary;
+    let most = summary.counts.values().max().filter(|most| **most > 0)?;
+    let bars = (0..=summary.items).map(|k| {
+        let people = summary.counts.get(&(k as u32)).copied().unwrap_or(0);
+        Point { x: k as f64, y: people as f64, interval: None, label: Some(people.to_string()) }
+    });
+    let label = format!("choices of {}, of {}", summary.target, summary.items);
+    let ends = [-0.5, summary.items as f64 + 0.5];
+    let x = match summary.items {
+        0..=MOST_NAMED => Axis::names(label, (0..=summary.items).map(|k| k.to_string()).collect()),
+        _ => Axis::linear(label).within(ends[0], ends[1]),
+    };
+    let mean = summary.mean.map(|mean| Rule::Vertical(mean, format!("mean {}", fixed(mean, 2))));
+    let chance = Rule::Vertical(summary.mu, format!("chance {}", fixed(summary.mu, 1)));
+    let figure = kelir_plot::Figure {
+        title: format!("{}: choices of {} per participant", summary.id, summary.target),
+        x,
+        // Room above the bars for their numbers and the names of the lines.
+        y: Axis::linear("participants").within(0.0, 1.4 * *most as f64),
+        series: vec![Series { points: bars.collect(), bars: true, ..Series::default() }],
+        rules: mean.into_iter().chain([chance]).collect(),
+        size: [WIDTH, 300],
+    };
+    let caption = format!(
+        "How many participants chose {} how often, of those who answered every pair of the block. Dashed: their mean, and chance, half the pairs.",
+        summary.target
+    );
+    Some(drawn(&format!("distribution-{}", file_name(&summary.id)), caption, svg(&figure)))
+}
+
 /// All conditions on one axis.
 pub(crate) fn scale(report: &StudyReport) -> Option<Piece> {
     let found = report.report.scale.as_ref()?;
@@ -104,18 +139,11 @@ pub(crate) fn psychometric(block: &BlockReport) -> Option<Piece> {
     if data.is_empty() {
         return None;
     }
-    let mut series =
-        vec![Series { name: String::new(), points: data, line: false, markers: true, dashed: false }];
+    let mut series = vec![Series { points: data, markers: true, ..Series::default() }];
     let mut rules = vec![Rule::Horizontal(found.guess, "guessing".to_owned())];
     if let Some(fit) = &found.fit {
         let points = fit.curve.iter().map(|p| Point { x: p.level, y: p.share, ..Point::default() });
-        series.push(Series {
-            name: String::new(),
-            points: points.collect(),
-            line: true,
-            markers: false,
-            dashed: false,
-        });
+        series.push(Series { points: points.collect(), line: true, ..Series::default() });
         rules.push(Rule::Vertical(fit.threshold.value, "threshold".to_owned()));
     }
     let level = match &found.asked.unit {
@@ -147,7 +175,7 @@ pub(crate) fn times(blocks: &[BlockReport]) -> Option<Piece> {
                 ..Point::default()
             });
             let name = block.summary.id.clone();
-            Series { name, points: points.collect(), line: true, markers: false, dashed: false }
+            Series { name, points: points.collect(), line: true, ..Series::default() }
         })
         .collect();
     if series.is_empty() {
@@ -219,7 +247,7 @@ pub(crate) fn errors(report: &StudyReport) -> Option<Piece> {
             label: (!own).then(|| j.pair.to_owned()),
         });
         let name = if *own { format!("{condition} (own noise)") } else { (*condition).to_owned() };
-        Series { name, points: points.collect(), line: false, markers: true, dashed: false }
+        Series { name, points: points.collect(), markers: true, ..Series::default() }
     });
     let figure = kelir_plot::Figure {
         title: "Preference against physical error".to_owned(),

@@ -2,7 +2,7 @@
 
 use crate::document::{Cell, Document, Piece, Row, Section, Table};
 
-const STYLE: &str = include_str!("style.css");
+const STYLE: &str = concat!(include_str!("style.css"), include_str!("shared.css"));
 
 /// Writes a document as one self-contained HTML file.
 pub fn html(document: &Document) -> String {
@@ -11,7 +11,7 @@ pub fn html(document: &Document) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-         <meta name=\"generator\" content=\"kelir\">\n<title>{title} · report</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
+         <meta name=\"generator\" content=\"kelir\">\n<title>{title} · report</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main class=\"report\">\n\
          <header>\n<h1>{title}</h1>\n<p class=\"quiet\">{}</p>\n</header>\n{sections}</main>\n</body>\n</html>\n",
         escaped(&document.subtitle)
     )

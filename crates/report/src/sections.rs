@@ -2,9 +2,10 @@
 
 use crate::blocks::{self, table};
 use crate::document::{Cell, Piece, Row, Section, Table};
-use crate::format::{MISSING, count, fixed, p_value, percent, range, share, significant};
+use crate::format::{count, fixed, p_value, percent, share, significant};
 use crate::numbers::{Sample, of_scale};
-use crate::{StudyReport, display, figures, headline, sources};
+use crate::{StudyReport, display, figures, headline, paper, sources};
+use kelir_study::report::BlockReport;
 use kelir_study::visits::Repeated;
 use kelir_study::{Condition, Kind, StudyDefinition};
 use std::collections::BTreeSet;
@@ -15,13 +16,7 @@ const MOST_LISTED: usize = 100;
 /// Everything there is to say.
 pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
     let mut sections = vec![headline::section(report)];
-    if let Some(figure) = figures::choices(&report.report.blocks) {
-        sections.push(Section {
-            title: "Who preferred what".to_owned(),
-            pieces: vec![figure],
-            reference: true,
-        });
-    }
+    sections.extend(preferences(&report.report.blocks));
     sections.push(participants(report));
     sections.push(design(report));
     sections.extend(report.report.blocks.iter().map(blocks::section));
@@ -29,11 +24,37 @@ pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
     sections.extend(times(report));
     sections.extend(errors(report));
     sections.extend(both_ways(report));
-    sections.extend(paper(report));
+    sections.extend(paper::section(report));
     sections.push(sources::methods(report));
     sections.push(sources::data(report));
     sections.push(sources::citation(report));
     sections
+}
+
+/// The blocks side by side: their shares, and the paper's test of each.
+fn preferences(blocks: &[BlockReport]) -> Option<Section> {
+    let figure = figures::choices(blocks)?;
+    let rows = blocks.iter().map(|block| {
+        let summary = &block.summary;
+        let title = Cell::text(&summary.title);
+        Row::Cells(vec![
+            summary.note.iter().fold(title, |cell, note| cell.noted(note)),
+            Cell::text(&summary.target),
+            Cell::whole(summary.n),
+            Cell::maybe(summary.mean, |x| fixed(x, 4)),
+            Cell::maybe(summary.sd, |x| fixed(x, 4)),
+            Cell::number(fixed(summary.mu, 1), summary.mu),
+            Cell::maybe(summary.t, |t| fixed(t, 3)),
+            Cell::maybe(summary.df, |df| fixed(df, 0)),
+            Cell::maybe(summary.p, p_value),
+            Cell::maybe(block.p_holm, p_value),
+        ])
+    });
+    let columns = ["block", "counted", "n#", "mean#", "SD#", "chance#", "t#", "df#", "p#", "p, Holm#"];
+    let caption = "Choices of the counted condition per participant, over those who answered every pair of the block. Two-tailed one-sample t-test \
+         against chance, half the pairs.";
+    let table = Piece::Table(Table::new(caption, &columns, rows.collect()));
+    Some(Section::new("Who preferred what", vec![figure, table]))
 }
 
 fn participants(report: &StudyReport) -> Section {
@@ -69,7 +90,7 @@ fn participants(report: &StudyReport) -> Section {
         pieces.push(Piece::Table(Table::new(caption, &["session", "reason"], rows.collect())));
         if report.excluded.len() > MOST_LISTED {
             pieces.push(Piece::Text(format!(
-                "And {} more: kelir stats {} --format json names them all.",
+                "And {} more: the table of participants and kelir stats {} --format json name them all.",
                 report.excluded.len() - MOST_LISTED,
                 report.study
             )));
@@ -259,7 +280,7 @@ fn errors(report: &StudyReport) -> Option<Section> {
             if j.error.own { condition.noted("error: its own standard error") } else { condition },
             Cell::number(significant(j.error.rms, 3), j.error.rms),
             j.error.floor.map_or_else(Cell::default, |floor| Cell::number(significant(floor, 3), floor)),
-            Cell { shown: share(j.share, j.interval), exact: Some(j.share.to_string()), note: None },
+            Cell::estimate(share(j.share, j.interval), j.share, j.interval.low, j.interval.high),
         ])
     });
     let columns =
@@ -293,66 +314,4 @@ fn both_ways(report: &StudyReport) -> Option<Section> {
     }
     let columns = ["block", "answers of", "n#", "share#", "t#", "p#", "p, Holm#"];
     Some(Section::new("With and without the excluded", vec![Piece::Table(Table::new("", &columns, rows))]))
-}
-
-/// The paper's own tests beside this study's.
-fn paper(report: &StudyReport) -> Option<Section> {
-    let paper = report.paper.as_ref()?;
-    let mut rows = Vec::new();
-    // The study's blocks repeat the paper's comparisons, in the paper's order.
-    let blocks = &report.report.blocks;
-    for (k, theirs) in paper.comparisons.iter().enumerate() {
-        let effect = |g: f64, low: f64, high: f64| Cell {
-            shown: format!("{}, {}", fixed(g, 3), range(low, high, 3)),
-            exact: Some(g.to_string()),
-            note: None,
-        };
-        rows.push(Row::Group(theirs.title.to_owned()));
-        rows.push(Row::Cells(vec![
-            Cell::text("the paper, as printed"),
-            Cell::whole(theirs.test.n),
-            Cell::number(fixed(theirs.printed.t, 3), theirs.printed.t),
-            Cell::default(),
-            Cell::default(),
-            Cell::default(),
-        ]));
-        rows.push(Row::Cells(vec![
-            Cell::text("the paper, from its counts"),
-            Cell::whole(theirs.test.n),
-            Cell::number(fixed(theirs.test.t, 3), theirs.test.t),
-            Cell::number(p_value(theirs.test.p), theirs.test.p),
-            Cell::number(p_value(theirs.p_holm), theirs.p_holm),
-            effect(theirs.effect.g, theirs.effect.g_interval.low, theirs.effect.g_interval.high),
-        ]));
-        if let Some(ours) = blocks.get(k).filter(|_| blocks.len() == paper.comparisons.len()) {
-            let g = ours.analysis.effect.as_ref();
-            rows.push(Row::Cells(vec![
-                Cell::text("this study"),
-                Cell::whole(ours.summary.n),
-                Cell::maybe(ours.summary.t, |t| fixed(t, 3)),
-                Cell::maybe(ours.summary.p, p_value),
-                Cell::maybe(ours.p_holm, p_value),
-                g.map_or_else(|| Cell::text(MISSING), |e| effect(e.g, e.g_interval.low, e.g_interval.high)),
-            ]));
-        }
-    }
-    let columns = ["of PA", "n#", "t#", "p#", "p, Holm#", "Hedges' g, 95% interval#"];
-    let mut pieces = vec![
-        Piece::Text(
-            "Taylor & Cameron's three tests, computed again from the counts that their printed means and standard deviations imply, beside this study's \
-             own. This study's pictures, scenes and participants are others; its photographs are simulated until real ones stand in their place."
-                .to_owned(),
-        ),
-        Piece::Table(Table::new("", &columns, rows)),
-    ];
-    for theirs in paper.comparisons.iter().filter(|c| !c.t_as_printed) {
-        let (from, to) = paper.printed_t.participants;
-        pieces.push(Piece::Warning(format!(
-            "The printed t = {} does not follow from the printed mean and standard deviation, whose counts give {}; no whole number of {from} to {to} \
-             participants gives it.",
-            fixed(theirs.printed.t, 3),
-            fixed(theirs.test.t, 3)
-        )));
-    }
-    Some(Section::new("The paper that this study repeats", pieces))
 }

@@ -16,19 +16,23 @@ pub(crate) fn methods(report: &StudyReport) -> Section {
 
 pub(crate) fn data(report: &StudyReport) -> Section {
     let fact = |name: &str, value: &str| Row::Cells(vec![Cell::text(name), Cell::text(value)]);
+    let counted = |name: &str, n: u64| Row::Cells(vec![Cell::text(name), Cell::whole(n)]);
     let mut rows = vec![
         fact("study", &report.study),
         fact("version (SHA-256 of its design and pictures)", &report.version),
         fact("design (SHA-256 of what is judged by)", &report.design.design_hash()),
         fact("file (SHA-256 of all its values)", &report.design.file_hash()),
-        fact("seed", &report.design.seed.to_string()),
+        counted("seed", report.design.seed),
         fact("kelir", &report.kelir_version),
-        fact("stored answers in the chain", &report.chain.rows.to_string()),
+        counted("stored answers in the chain", report.chain.rows),
         fact("chain of answers ends in", &report.chain.head),
-        fact("answers blanked by withdrawal", &report.chain.blanked.to_string()),
+        counted("answers blanked by withdrawal", report.chain.blanked),
     ];
     for version in report.pooled.iter().skip(1) {
         rows.push(fact("pooled with version", &version.version));
+    }
+    if report.chain.faults.is_empty() {
+        rows.push(fact("check of the chain", "every stored answer is what was written, in order"));
     }
     for fault in &report.chain.faults {
         let note =

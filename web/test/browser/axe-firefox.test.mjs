@@ -49,7 +49,7 @@ test("in Firefox: the console", { skip: !hasFirefox }, async (t) => {
   await firefox.evaluate(() => fetch("/api/v1/auth/session", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify({ password: "wayang" }) }).then(() => true));
   for (const [path, ready] of [
     ["", "table"],
-    [`/${study.id}`, '[data-testid="report-photographs"]'],
+    [`/${study.id}`, "#report-how-to-cite"],
     ["/empty", ".empty"],
   ]) {
     await firefox.goto(`${mock.url}/console/studies${path}`);

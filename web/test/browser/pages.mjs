@@ -208,11 +208,10 @@ export async function consolePages(v, look) {
   await v.page.getByRole("heading", { name: "Studies" }).waitFor();
   await look("studies");
   await open(`/studies/${study.id}`);
-  await v.hook("report-photographs").waitFor();
-  await v.page.locator(".paper h2").waitFor();
+  await v.page.getByRole("heading", { name: "How to cite" }).waitFor();
   await look("study");
   await open(`/studies/${study.id}?version=${versions.before.slice(0, 12)}&with=${versions.current.slice(0, 12)}`);
-  await v.hook("report-photographs").waitFor();
+  await v.page.getByRole("heading", { name: "How to cite" }).waitFor();
   await look("versions pooled");
   await open("/studies/empty");
   await v.page.locator(".empty").first().waitFor();

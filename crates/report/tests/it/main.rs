@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 mod fixture;
+mod pages;
 
 use fixture::{Study, hostile, levels, paper, svg_disks, triangle};
 use kelir_report::{Document, Figures, Sample, StudyReport, csv, html, markdown, numbers, text};
@@ -99,12 +100,12 @@ fn every_form_says_the_same() {
     assert!(plain.lines().all(|line| line.chars().count() <= 100), "{plain}");
     assert!(!plain.contains("SHA-256") && page.contains("SHA-256") && md.text.contains("SHA-256"));
     // Figures: within the page; beside the text or within it.
-    assert_eq!((page.matches("<svg").count(), md.files.len()), (document.figures().count(), 4));
+    assert_eq!((page.matches("<svg").count(), md.files.len()), (document.figures().count(), 7));
     for (path, svg) in &md.files {
         assert!(md.text.contains(&format!("(<{path}>)")) && svg.starts_with("<svg"), "{path}");
     }
     let whole = markdown(&document, &Figures::Embedded);
-    assert!(whole.files.is_empty() && whole.text.matches("data:image/svg+xml;base64,PHN2Z").count() == 4);
+    assert!(whole.files.is_empty() && whole.text.matches("data:image/svg+xml;base64,PHN2Z").count() == 7);
     // The same answers give the same bytes.
     assert_eq!(html(&Document::of(&paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report())), page);
     // Nothing is fetched and nothing runs.

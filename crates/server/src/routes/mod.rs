@@ -56,6 +56,7 @@ fn operations() -> Vec<UtoipaMethodRouter<Arc<App>>> {
         routes!(studies::list_versions),
         routes!(versions::get_results),
         routes!(versions::get_report),
+        routes!(versions::get_document),
         routes!(versions::get_report_html),
         routes!(versions::get_report_md),
         routes!(versions::get_responses_csv),

@@ -86,6 +86,16 @@ pub(crate) async fn get_report(asked: Asked) -> Answered<StudyReport> {
     Ok(Fresh(judged(asked).await?))
 }
 
+/// The full report as it is written: sections of texts, tables and figures, the same as in the files of it.
+#[utoipa::path(
+    get, path = "/api/v1/studies/{study}/versions/{version}/document", tag = "results", security(("researcher" = [])),
+    params(VersionPath, Pooling),
+    responses((status = OK, description = "The document.", body = Document), Chosen)
+)]
+pub(crate) async fn get_document(asked: Asked) -> Answered<Document> {
+    Ok(Fresh(Document::of(&judged(asked).await?)))
+}
+
 /// The full report as one HTML file.
 #[utoipa::path(
     get, path = "/api/v1/studies/{study}/versions/{version}/report.html", tag = "results", security(("researcher" = [])),

@@ -334,6 +334,7 @@ async fn answers_are_what_the_document_says() {
         ("list_versions", "studies/shadow-puppets/versions"),
         ("get_results", "studies/shadow-puppets/versions/current/results"),
         ("get_report", "studies/shadow-puppets/versions/current/report"),
+        ("get_document", "studies/shadow-puppets/versions/current/document"),
         ("get_codebook", "studies/shadow-puppets/versions/current/codebook.json"),
         ("get_taylor_cameron", "papers/taylor-cameron"),
     ] {

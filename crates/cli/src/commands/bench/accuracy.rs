@@ -266,9 +266,13 @@ fn figure(report: &Report, scene: &str) -> Figure {
         let point = Point { x: m.first.median, y: m.penumbra.rmse, interval: None, label };
         match series.iter_mut().find(|s| s.name == name) {
             Some(of) => of.points.push(point),
-            None => {
-                series.push(Series { name, points: vec![point], line: true, markers: true, dashed: false })
-            }
+            None => series.push(Series {
+                name,
+                points: vec![point],
+                line: true,
+                markers: true,
+                ..Series::default()
+            }),
         }
     }
     // Knobs at both ends of a line say which way it runs.
