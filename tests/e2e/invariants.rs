@@ -21,20 +21,27 @@ const IMPURE: [&str; 5] = ["tokio", "sqlx", "rusqlite", "axum", "wgpu"];
 /// What answers requests, and judges passwords for it: the house knows no HTTP.
 const HTTP: [&str; 6] = ["axum", "hyper", "tower", "tower-http", "argon2", "kelir-server"];
 /// What some rooms alone may name, beside tests.
-const OWNED: [(&str, &[&str]); 8] = [
-    ("wgpu", &["kelir-render"]),
+const OWNED: [(&str, &[&str]); 10] = [
+    ("wgpu", &["kelir-frame", "kelir-theatre"]),
     ("sqlx", &["kelir-store"]),
     ("rusqlite", &["kelir-store"]),
     ("axum", &["kelir-server"]),
+    ("kelir-frame", &["kelir-theatre", "kelir-render"]),
+    ("kelir-theatre", &["kelir-render"]),
     ("kelir-render", &["kelir-house", "kelir"]),
     ("kelir-house", &["kelir-server", "kelir"]),
     ("kelir-server", &["kelir"]),
     ("kelir-fixtures", &[]),
 ];
 
-/// Rooms that must not reach another: the reader knows nothing of what it reads, a study nothing of what is drawn.
-const APART: [(&str, &str); 3] =
-    [("kelir-reader", "kelir-scene"), ("kelir-reader", "kelir-study"), ("kelir-study", "kelir-scene")];
+/// Rooms that must not reach another: the reader knows nothing of what it reads, a study nothing of what is drawn, an image nothing of what
+/// it shows.
+const APART: [(&str, &str); 4] = [
+    ("kelir-reader", "kelir-scene"),
+    ("kelir-reader", "kelir-study"),
+    ("kelir-study", "kelir-scene"),
+    ("kelir-frame", "kelir-scene"),
+];
 
 /// Every broken invariant, as a sentence.
 fn violations(metadata: &Value) -> Vec<String> {
@@ -138,6 +145,10 @@ fn a_broken_wall_is_seen() {
         ("kelir-server", "kelir-render"),
         ("kelir-study", "kelir-scene"),
         ("kelir-study", "kelir-fixtures"),
+        ("kelir-render", "wgpu"),
+        ("kelir-house", "kelir-theatre"),
+        ("kelir-house", "kelir-frame"),
+        ("kelir-frame", "kelir-scene"),
     ] {
         add_edge(&mut doctored, from, to);
     }
@@ -153,6 +164,10 @@ fn a_broken_wall_is_seen() {
         "kelir-server names kelir-render: only kelir-house and kelir may",
         "kelir-study reaches kelir-scene: it must know nothing of it",
         "kelir-study names kelir-fixtures: only tests may",
+        "kelir-render names wgpu: only kelir-frame and kelir-theatre may",
+        "kelir-house names kelir-theatre: only kelir-render may",
+        "kelir-house names kelir-frame: only kelir-theatre and kelir-render may",
+        "kelir-frame reaches kelir-scene: it must know nothing of it",
     ] {
         assert!(found.iter().any(|v| v == broken), "{broken}: {found:?}");
     }
@@ -241,9 +256,11 @@ fn the_house_reaches_the_renderer_through_one_door() {
     assert_eq!(past_the_door(text), ["pa", "mc", "gpu"]);
 }
 
-/// What of the renderer may know techniques by name: their list, the crate's face, and what compares them.
-const KNOW_TECHNIQUES: [&str; 6] =
-    ["lib.rs", "techniques/mod.rs", "accuracy/", "bench.rs", "bench/", "numerics/"];
+/// What draws, and the door to it.
+const RENDERERS: [&str; 2] = ["crates/theatre/src/", "crates/render/src/"];
+/// What of these may know techniques by name: their lists, the crates' faces, and what compares them.
+const KNOW_TECHNIQUES: [&str; 7] =
+    ["lib.rs", "techniques/mod.rs", "accuracy/", "bench.rs", "bench/", "numerics/", "kernels.rs"];
 
 /// Every technique that a file of the renderer knows and should not: a technique itself alone, what they share none. Tests compare freely.
 fn known_techniques(file: &str, text: &str, techniques: &BTreeSet<String>) -> Vec<String> {
@@ -252,8 +269,9 @@ fn known_techniques(file: &str, text: &str, techniques: &BTreeSet<String>) -> Ve
     }
     let own = file.strip_prefix("techniques/").and_then(|rest| rest.split('/').next());
     let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
-    let named =
-        ["crate::", "super::", "techniques::"].into_iter().flat_map(|prefix| named_after(code, prefix));
+    let named = ["crate::", "super::", "techniques::", "kelir_theatre::"]
+        .into_iter()
+        .flat_map(|prefix| named_after(code, prefix));
     named
         .filter(|name| techniques.contains(name) && Some(name.as_str()) != own)
         .map(|name| format!("{file} names {name}"))
@@ -262,27 +280,32 @@ fn known_techniques(file: &str, text: &str, techniques: &BTreeSet<String>) -> Ve
 
 #[test]
 fn techniques_do_not_know_each_other() {
-    const SRC: &str = "crates/render/src";
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("root");
-    let techniques: BTreeSet<String> = fs::read_dir(root.join(SRC).join("techniques"))
+    let techniques: BTreeSet<String> = fs::read_dir(root.join(RENDERERS[0]).join("techniques"))
         .expect("techniques")
         .map(|entry| entry.expect("an entry"))
         .filter(|entry| entry.path().is_dir())
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();
     assert!(techniques.len() >= 5, "{techniques:?}");
-    let known: Vec<String> = sources(&[SRC])
-        .iter()
-        .flat_map(|(path, text)| known_techniques(&path[SRC.len() + 1..], text, &techniques))
-        .collect();
+    let mut known = Vec::new();
+    for crate_src in RENDERERS {
+        let files = sources(&[crate_src.trim_end_matches('/')]);
+        assert!(!files.is_empty(), "{crate_src}");
+        known.extend(
+            files
+                .iter()
+                .flat_map(|(path, text)| known_techniques(&path[crate_src.len()..], text, &techniques)),
+        );
+    }
     assert_eq!(known, Vec::<String>::new());
 
     // Negative control: a name in a list, one by way of the parent and one in full are seen; the technique itself and tests are not.
     let text = "use crate::{View, gpu::{Gpu, Output}, mc};\nuse super::super::oracle;\nlet a = crate::pa::plan();\n\
-                let b = crate::points::one();\n#[cfg(test)]\nmod tests {\n    use crate::pcss;\n}";
+                let b = kelir_theatre::points::one();\n#[cfg(test)]\nmod tests {\n    use crate::pcss;\n}";
     let seen = |file: &str| known_techniques(file, text, &techniques).len();
     assert_eq!(known_techniques("techniques/points/mod.rs", text, &techniques).len(), 3);
-    assert_eq!([seen("techniques/pa/plan.rs"), seen("trace/mod.rs"), seen("bench/kernels.rs")], [3, 4, 0]);
+    assert_eq!([seen("techniques/pa/plan.rs"), seen("trace/mod.rs"), seen("kernels.rs")], [3, 4, 0]);
     assert_eq!(known_techniques("techniques/points/tests.rs", text, &techniques), Vec::<String>::new());
 }
 

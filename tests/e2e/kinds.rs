@@ -39,12 +39,12 @@ pub(crate) struct Stored {
 
 impl Stored {
     /// Where the target was chosen.
-    pub fn chose_target(&self) -> bool {
+    pub(crate) fn chose_target(&self) -> bool {
         self.shown[self.answer["choice"].as_str().unwrap()]["condition"] == "pa"
     }
 
     /// The item shown; every role's is the same.
-    pub fn item(&self) -> &str {
+    pub(crate) fn item(&self) -> &str {
         let items: Vec<&str> =
             self.shown.as_object().unwrap().values().map(|s| s["item"].as_str().unwrap()).collect();
         assert!(items.len() == 2 && items[0] == items[1], "{items:?}");

@@ -40,8 +40,8 @@ function laid(piece: Piece, where: string): Node[] {
 
 const inWords = (piece: Piece): string => (piece.kind === "list" ? piece.content.join("\n") : typeof piece.content === "string" ? piece.content : "");
 
-/** What may be wider than a phone scrolls by itself, by keyboard too. */
-const scrolling = (label: string, content: Element) => h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, content);
+/** What may be wider than a phone scrolls by itself, by keyboard too; a group and no region, or each table were a landmark. */
+const scrolling = (label: string, content: Element) => h("div", { class: "scroll", tabindex: 0, role: "group", "aria-label": label }, content);
 
 function laidTable({ caption, columns, rows }: Table, where: string): Node[] {
   const word = (column: number) => (columns[column]?.numeric === true ? null : "word");

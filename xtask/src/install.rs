@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 
 /// Something outside cargo and npm.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Need {
+pub(crate) enum Need {
     /// Node.js 20 or newer with npm: builds the web bundle.
     Node,
     /// A C compiler: SQLite and libwebp are built from source.
@@ -80,7 +80,7 @@ impl Need {
 /// Installs what is missing where that is possible (Debian or Ubuntu, as root) and says how to do it by hand where not.
 ///
 /// A missing Vulkan driver only stops a task that also needs the browser, that is: the tests.
-pub fn ensure(needs: &[Need]) -> Result<()> {
+pub(crate) fn ensure(needs: &[Need]) -> Result<()> {
     let testing = needs.contains(&Need::Chromium);
     let missing: Vec<Need> = needs.iter().copied().filter(|need| !need.present()).collect();
     let packages: Vec<&str> = missing.iter().flat_map(|need| need.packages()).copied().collect();
@@ -104,7 +104,7 @@ pub fn ensure(needs: &[Need]) -> Result<()> {
 }
 
 /// Whether this machine has a GPU of its own, not one that its CPU imitates.
-pub fn has_gpu() -> bool {
+pub(crate) fn has_gpu() -> bool {
     has_gpu_below(Path::new("/"))
 }
 

@@ -118,7 +118,7 @@ fn bench() -> Result<()> {
         command.arg("bench").args(args);
         step(name, command)?;
     }
-    step("kernels", cargo(&["bench", "--package", "kelir-render"]))
+    step("kernels", cargo(&["bench", "--package", "kelir-theatre"]))
 }
 
 /// The attacks of `tests/soak` on the release binary.

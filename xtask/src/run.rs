@@ -8,31 +8,31 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 
 /// The repository's root.
-pub fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the root").to_path_buf()
 }
 
 /// Cargo's target folder, as the environment has it.
-pub fn target_dir() -> PathBuf {
+pub(crate) fn target_dir() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
 /// `cargo ARGS` in the root.
-pub fn cargo(args: &[&str]) -> Command {
+pub(crate) fn cargo(args: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(args);
     command
 }
 
 /// `npm ARGS` in `folder`.
-pub fn npm(folder: &str, args: &[&str]) -> Command {
+pub(crate) fn npm(folder: &str, args: &[&str]) -> Command {
     let mut command = Command::new("npm");
     command.args(args).args(["--no-fund", "--no-audit"]).current_dir(root().join(folder));
     command
 }
 
 /// Runs one step to its end; a failing step ends the task and names the command that repeats it.
-pub fn step(name: &str, mut command: Command) -> Result<()> {
+pub(crate) fn step(name: &str, mut command: Command) -> Result<()> {
     eprintln!("── {name}");
     let begun = Instant::now();
     let status = command.status().with_context(|| format!("{name}: cannot start {command:?}"))?;
@@ -44,7 +44,7 @@ pub fn step(name: &str, mut command: Command) -> Result<()> {
 }
 
 /// Runs `cargo test` like [`step`] and ends with the sum over its binaries: one line that says how much was tested.
-pub fn tests(name: &str, mut command: Command) -> Result<()> {
+pub(crate) fn tests(name: &str, mut command: Command) -> Result<()> {
     eprintln!("── {name}");
     let begun = Instant::now();
     let mut child = command.stdout(Stdio::piped()).spawn().with_context(|| format!("{name}: {command:?}"))?;

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// How results are printed.
 #[derive(clap::Args, Clone, Copy)]
-pub struct Printed {
+pub(crate) struct Printed {
     /// Print one JSON document, in full precision.
     #[arg(long, conflicts_with = "format")]
     json: bool,
@@ -20,14 +20,14 @@ pub struct Printed {
 
 impl Printed {
     /// The form asked for.
-    pub fn form(self) -> Format {
+    pub(crate) fn form(self) -> Format {
         if self.json { Format::Json } else { self.format }
     }
 }
 
 /// A form of results.
 #[derive(Clone, Copy, ValueEnum)]
-pub enum Format {
+pub(crate) enum Format {
     /// Aligned columns.
     Table,
     /// As `--json`.
@@ -39,7 +39,7 @@ pub enum Format {
 
 /// `--json` of commands that take long and may also leave their figures in a file.
 #[derive(clap::Args, Clone, Debug)]
-pub struct Figures {
+pub(crate) struct Figures {
     /// Print one JSON document in place of the text, in full precision; with FILE, write it there beside the text.
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
     json: Option<PathBuf>,
@@ -47,12 +47,12 @@ pub struct Figures {
 
 impl Figures {
     /// Prints a text, unless the figures stand in its place.
-    pub fn say(&self, text: &str) -> Result<()> {
+    pub(crate) fn say(&self, text: &str) -> Result<()> {
         if self.printed() { Ok(()) } else { print(text) }
     }
 
     /// Prints what the figures were measured on; to standard error where a document stands in place of the text.
-    pub fn note(&self, text: &str) -> Result<()> {
+    pub(crate) fn note(&self, text: &str) -> Result<()> {
         if self.printed() {
             writeln!(std::io::stderr(), "{}", text.trim_start())?;
             return Ok(());
@@ -61,7 +61,7 @@ impl Figures {
     }
 
     /// Prints or writes the figures, if they are asked for.
-    pub fn give(&self, figures: &impl Serialize) -> Result<()> {
+    pub(crate) fn give(&self, figures: &impl Serialize) -> Result<()> {
         match &self.json {
             None => Ok(()),
             Some(_) if self.printed() => print_json(figures),
@@ -78,12 +78,12 @@ impl Figures {
 }
 
 /// Prints one JSON document.
-pub fn print_json(document: &impl Serialize) -> Result<()> {
+pub(crate) fn print_json(document: &impl Serialize) -> Result<()> {
     print(&serde_json::to_string_pretty(document)?)
 }
 
 /// Prints a document and a final newline; a closed pipe (`kelir … | head`) is no failure.
-pub fn print(text: &str) -> Result<()> {
+pub(crate) fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{}", text.trim_end()) {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
@@ -92,7 +92,7 @@ pub fn print(text: &str) -> Result<()> {
 }
 
 /// Columns aligned: words to the left, numbers to the right.
-pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
+pub(crate) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         cells.chain([header[column].chars().count()]).max().unwrap_or(0)
@@ -114,7 +114,7 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
 }
 
 /// A header and rows as CSV.
-pub fn csv(header: &[&str], rows: &[Vec<String>]) -> String {
+pub(crate) fn csv(header: &[&str], rows: &[Vec<String>]) -> String {
     csv_table(Terminator::Any(b'\n'), header, rows)
 }
 

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use kelir_render::Meter;
 
 /// A bar with count and time left; silent when standard error is no terminal (indicatif sees to that).
-pub fn bar(total: u64, what: &str) -> ProgressBar {
+pub(crate) fn bar(total: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{msg:<32} {bar:30} {pos}/{len} {eta} left");
     bar.set_style(style.expect("the template is well-formed"));
@@ -16,7 +16,7 @@ pub fn bar(total: u64, what: &str) -> ProgressBar {
 }
 
 /// Runs `work`, which counts its rows in `meter`; a bar shows them once it has taken a second.
-pub fn watch<T>(meter: &Meter, what: &str, work: impl FnOnce() -> T) -> T {
+pub(crate) fn watch<T>(meter: &Meter, what: &str, work: impl FnOnce() -> T) -> T {
     let (done, finished) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         scope.spawn(move || {

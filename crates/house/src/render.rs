@@ -69,7 +69,8 @@ impl Maker for RenderMaker {
 pub(crate) fn rehearse(task: &Task<'_>, scene: Scene) -> (Scene, Result<(), RenderError>) {
     match job(task) {
         Ok(job) if task.rank > 0 => {
-            let possible = job.view.check(&scene.still());
+            let screen = scene.still().screen;
+            let possible = job.view.check([screen.width_m, screen.height_m]);
             (scene, possible)
         }
         Ok(job) => kelir_render::job::rehearse(job.with_scene(scene)),

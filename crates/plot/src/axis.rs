@@ -90,7 +90,7 @@ impl Axis {
 
 impl Fitted {
     /// Axis units of a value.
-    pub fn place(&self, value: f64) -> f64 {
+    pub(crate) fn place(&self, value: f64) -> f64 {
         if self.log { value.log10() } else { value }
     }
 }

@@ -3,13 +3,14 @@
 use std::time::Instant;
 
 use kelir_scene::{Masks, Scene, Theatre};
+use kelir_theatre::kernels;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::exposure::Rule;
+use crate::subject::Staged;
 use crate::{Backend, RenderError, Renderer, Technique, View, renderer};
 
-pub mod kernels;
 mod savings;
 mod scaling;
 
@@ -90,7 +91,7 @@ pub fn frames(
     cases: &[Case],
 ) -> Result<FramesReport, RenderError> {
     let mut drawing = renderer(technique, backend)?;
-    let white = Rule::Still.white(scene, view, None);
+    let white = scene.white(Rule::Still, view, None);
     let (still, mut masks) = (scene.still(), Masks::default());
     let mut report = FramesReport {
         size: view.size,
@@ -134,7 +135,7 @@ struct Timed {
 
 /// Draws frame after frame of what `theatre` makes; the first three are not timed.
 fn timed(
-    drawing: &mut dyn Renderer,
+    drawing: &mut dyn Renderer<Theatre>,
     view: &View,
     white: f64,
     frames: usize,
@@ -194,23 +195,14 @@ fn bound(steps_ms: &[(String, f64)]) -> String {
 /// Least times, ms, over `runs`: building the u32 table of `side`² 8-bit texels, and a plain widening copy of them u8 → u32 on as many
 /// threads.
 pub fn table(side: usize, runs: usize) -> [f64; 2] {
-    use kelir_scene::{Mask, Texels};
-    let texels: Vec<u8> = (0..side * side).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
-    let mut copy = vec![0u32; side * side];
-    let mask = Mask::new(side, side, 1, Texels::U8(texels.clone()));
-    let mut spare = None;
+    let mut kernels = [kernels::table(side, 8), kernels::copy(side)];
     let mut least = [f64::INFINITY; 2];
     for _ in 0..runs.max(1) {
-        let clock = Instant::now();
-        spare = Some(crate::pa::table::Table::new(&mask, 0, false, spare.take()));
-        least[0] = least[0].min(clock.elapsed().as_secs_f64() * 1e3);
-        let clock = Instant::now();
-        let part = copy.len().div_ceil(rayon::current_num_threads());
-        copy.par_chunks_mut(part).zip(texels.par_chunks(part)).for_each(|(to, from)| {
-            to.iter_mut().zip(from).for_each(|(to, from)| *to = u32::from(*from));
-        });
-        std::hint::black_box(&copy);
-        least[1] = least[1].min(clock.elapsed().as_secs_f64() * 1e3);
+        for (least, kernel) in least.iter_mut().zip(&mut kernels) {
+            let clock = Instant::now();
+            kernel.run();
+            *least = least.min(clock.elapsed().as_secs_f64() * 1e3);
+        }
     }
     least
 }

@@ -2,8 +2,12 @@
 
 use kelir_scene::{Masks, Scene, Theatre, Timeline};
 
-use crate::albedo::{self, PixelAlbedo};
-use crate::{Backend, RenderError, Renderer, Technique, View, exposure, irradiance, penumbra, techniques};
+use kelir_frame::exposure::Rule;
+use kelir_frame::{Backend, RenderError, Renderer, View};
+use kelir_theatre::albedo::{self, PixelAlbedo};
+use kelir_theatre::{exposure, irradiance, penumbra, project};
+
+use crate::{Technique, techniques};
 
 /// What one image shows.
 pub trait Subject: Clone {
@@ -54,11 +58,26 @@ pub trait Staged {
         technique: &Technique,
         backend: Backend,
     ) -> Result<Box<dyn Renderer<Self::Subject>>, RenderError>;
+
+    /// White for the scene: as it says, or by this rule; `time_s` is a still's instant, absent for the scene as written.
+    fn white(&self, rule: Rule, view: &View, time_s: Option<f64>) -> f64 {
+        let Some(timeline) = self.timeline().filter(|_| rule == Rule::Timeline) else {
+            return Subject::white(&[self.lit(time_s)], view);
+        };
+        let mut all: Vec<Self::Subject> = Vec::new();
+        for frame in 0..timeline.frame_count() {
+            let lit = self.lit(Some(timeline.frame_time_s(frame)));
+            if all.iter().all(|other| !other.same_staging(&lit)) {
+                all.push(lit);
+            }
+        }
+        Subject::white(&all, view)
+    }
 }
 
 impl Subject for Theatre {
     fn sides_m(&self) -> [f64; 2] {
-        [self.screen.width_m, self.screen.height_m]
+        project::sides_m(&self.screen)
     }
 
     fn white(all: &[Self], view: &View) -> f64 {
@@ -111,7 +130,7 @@ impl Staged for Scene {
         theatre
     }
 
-    fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
+    fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Renderer<Theatre>>, RenderError> {
         techniques::renderer(technique, backend)
     }
 }

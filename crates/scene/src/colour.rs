@@ -6,7 +6,7 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
 }
 
 /// Linear values of the 256 8-bit sRGB codes.
-pub fn srgb8_to_linear() -> &'static [f32; 256] {
+pub(crate) fn srgb8_to_linear() -> &'static [f32; 256] {
     static TABLE: std::sync::OnceLock<[f32; 256]> = std::sync::OnceLock::new();
     TABLE.get_or_init(|| std::array::from_fn(|code| srgb_to_linear(code as f64 / 255.0) as f32))
 }

@@ -20,18 +20,18 @@ pub(crate) struct Loader<'a> {
 
 impl<'a> Loader<'a> {
     /// `label` is how the caller calls the scene file, `name` its path from the root.
-    pub fn new(assets: &'a dyn Assets, label: &str, name: &str, reading: &'a Reading) -> Self {
+    pub(crate) fn new(assets: &'a dyn Assets, label: &str, name: &str, reading: &'a Reading) -> Self {
         let prefix = label.strip_suffix(name).unwrap_or("").to_owned();
         Self { assets, prefix, files: RefCell::default(), reading }
     }
 
     /// How messages call a file.
-    pub fn label(&self, path: &str) -> String {
+    pub(crate) fn label(&self, path: &str) -> String {
         format!("{}{path}", self.prefix)
     }
 
     /// The file that `node` names, relative to the file `from`: its path from the root and its bytes, at most `most`.
-    pub fn read(&self, from: &str, node: &Node, most: usize) -> Option<(String, Rc<[u8]>)> {
+    pub(crate) fn read(&self, from: &str, node: &Node, most: usize) -> Option<(String, Rc<[u8]>)> {
         let path = match resolve(from, node.string()?) {
             Ok(path) => path,
             Err(rule) => return node.refuse(rule),
@@ -55,7 +55,7 @@ impl<'a> Loader<'a> {
     }
 
     /// Every file that was read, by its path from the root.
-    pub fn files(self) -> BTreeMap<String, Rc<[u8]>> {
+    pub(crate) fn files(self) -> BTreeMap<String, Rc<[u8]>> {
         self.files.into_inner()
     }
 }

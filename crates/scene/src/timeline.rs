@@ -67,7 +67,7 @@ pub(crate) struct Track {
 
 impl Track {
     /// The value at an instant: the first key's before it, the last key's after it.
-    pub fn value(&self, instant_s: f64) -> Vec<f64> {
+    pub(crate) fn value(&self, instant_s: f64) -> Vec<f64> {
         let next = self.keys.partition_point(|(t, _)| *t <= instant_s);
         let Some((t0, from)) = self.keys.get(next.wrapping_sub(1)) else { return self.keys[0].1.clone() };
         let Some((t1, to)) = self.keys.get(next) else { return from.clone() };

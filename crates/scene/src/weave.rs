@@ -22,7 +22,7 @@ pub(crate) struct Weave {
 }
 
 impl Weave {
-    pub fn read(node: &Node) -> Option<Self> {
+    pub(crate) fn read(node: &Node) -> Option<Self> {
         let mut fields = node.table()?;
         let share = "is between 0 and 1";
         let base =
@@ -54,7 +54,7 @@ impl Weave {
     }
 
     /// The cloth stretched over a screen, four pixels a thread; the same on every machine.
-    pub fn rasterise(&self, width_m: f64, height_m: f64) -> LinearImage {
+    pub(crate) fn rasterise(&self, width_m: f64, height_m: f64) -> LinearImage {
         let width = (4 * self.threads as usize).clamp(1, limits::IMAGE_SIDE);
         let height = ((width as f64 * height_m / width_m).round() as usize).clamp(1, limits::IMAGE_SIDE);
         let pitch = width as f64 / f64::from(self.threads);

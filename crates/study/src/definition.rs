@@ -74,7 +74,7 @@ pub struct Completion {
 }
 
 /// Parameters of links by which recruiting panels (Prolific, MTurk, SONA) name people, studies and visits; any of them may stand in a redirect.
-pub const PANEL_PARAMS: [&str; 10] = [
+pub(crate) const PANEL_PARAMS: [&str; 10] = [
     "PROLIFIC_PID",
     "STUDY_ID",
     "SESSION_ID",

@@ -16,7 +16,7 @@ use crate::{bad_input, progress};
 
 /// Arguments of `kelir animate`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     drawing: Drawing,
     #[command(flatten)]
@@ -75,7 +75,7 @@ impl Target {
 }
 
 /// Runs the command.
-pub fn run(args: Args) -> Result<()> {
+pub(crate) fn run(args: Args) -> Result<()> {
     let mut job = args.drawing.job(Output::Animation, args.exposure, None)?;
     let Some(timeline) = job.scene.timeline() else {
         return Err(bad_input(format!("{}: timeline: an animation needs one", args.drawing.scene.display())));

@@ -14,7 +14,7 @@ mod rows;
 
 /// Subcommands of `kelir bench`.
 #[derive(clap::Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Frames a second without file output, beside the time to fill such a frame with a constant.
     Frames {
         #[command(flatten)]
@@ -64,7 +64,7 @@ impl Command {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command) -> Result<()> {
     let figures = command.figures().clone();
     measure(command)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());

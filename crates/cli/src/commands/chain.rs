@@ -13,7 +13,7 @@ use crate::output::{Format, Printed, csv, print, print_json, table};
 
 /// Subcommands of `kelir chain`.
 #[derive(Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Prove a study's chain of answers: every row that is not what was written is named, and checking goes on behind it. Exit code 1 where one
     /// is unexplained.
     Check {
@@ -48,7 +48,7 @@ pub enum Command {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command) -> Result<()> {
     match command {
         Command::Check { study, data, printed } => {
             let report = block_on(async {

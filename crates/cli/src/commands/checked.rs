@@ -10,7 +10,7 @@ use crate::BadInput;
 use crate::output::{print, print_json};
 
 /// What was found so far. Exit code 2 once something is wrong.
-pub struct Checked {
+pub(super) struct Checked {
     json: bool,
     files: Vec<Value>,
     problems: Vec<String>,
@@ -18,12 +18,18 @@ pub struct Checked {
 
 impl Checked {
     /// Nothing yet.
-    pub fn new(json: bool) -> Checked {
+    pub(super) fn new(json: bool) -> Checked {
         Checked { json, files: Vec::new(), problems: Vec::new() }
     }
 
     /// A file that is good; `details` says what it is, for people and for programs. `warnings` are what may be a mistake all the same.
-    pub fn good(&mut self, file: &Path, details: &str, about: Value, warnings: &[Problem]) -> Result<()> {
+    pub(super) fn good(
+        &mut self,
+        file: &Path,
+        details: &str,
+        about: Value,
+        warnings: &[Problem],
+    ) -> Result<()> {
         let file = file.display().to_string();
         self.files.push(
             json!({ "file": file, "good": true, "about": about, "problems": [], "warnings": warnings }),
@@ -37,12 +43,12 @@ impl Checked {
     }
 
     /// A file that is wrong.
-    pub fn wrong(&mut self, file: &Path, problems: &Problems) {
+    pub(super) fn wrong(&mut self, file: &Path, problems: &Problems) {
         self.add(file, problems, problems.to_string());
     }
 
     /// A file that could not be read at all.
-    pub fn unreadable(&mut self, file: &Path, rule: String) {
+    pub(super) fn unreadable(&mut self, file: &Path, rule: String) {
         let problem = Problem::new(file.display().to_string(), "", None, rule.clone());
         self.add(file, &[problem], rule);
     }
@@ -53,7 +59,7 @@ impl Checked {
     }
 
     /// Prints what is left to print.
-    pub fn finish(self) -> Result<()> {
+    pub(super) fn finish(self) -> Result<()> {
         if self.json {
             print_json(&self.files)?;
         }

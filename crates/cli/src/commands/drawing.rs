@@ -18,7 +18,7 @@ use crate::output::print_json;
 
 /// What to draw and how.
 #[derive(clap::Args)]
-pub struct Drawing {
+pub(crate) struct Drawing {
     /// Scene file (TOML), or the name of a scene that ships: `kelir scene list`.
     pub scene: PathBuf,
     /// What draws; `kelir technique` says what each is, and what can be turned on it.
@@ -42,7 +42,7 @@ pub struct Drawing {
 
 /// Whether what was done is printed.
 #[derive(clap::Args)]
-pub struct Told {
+pub(super) struct Told {
     /// Print one JSON document: what was done, skipped and how long each step took.
     #[arg(long)]
     json: bool,
@@ -53,7 +53,7 @@ pub struct Told {
 
 impl Told {
     /// Prints the document, if it is asked for.
-    pub fn tell(&self, document: &impl Serialize) -> Result<()> {
+    pub(super) fn tell(&self, document: &impl Serialize) -> Result<()> {
         if self.json || self.stats.is_some() { print_json(document) } else { Ok(()) }
     }
 }
@@ -66,7 +66,7 @@ enum StatsFormat {
 
 /// Names of the pixel rules on the command line.
 #[derive(Clone, Copy, ValueEnum)]
-pub enum PixelName {
+pub(crate) enum PixelName {
     /// Mean over the pixel.
     Area,
     /// Value at the centre.
@@ -93,7 +93,7 @@ impl From<ExposureName> for Rule {
 
 impl Drawing {
     /// What is asked of the renderer, as a study would ask it.
-    pub fn job(&self, output: Output, exposure: ExposureName, time_s: Option<f64>) -> Result<Job> {
+    pub(crate) fn job(&self, output: Output, exposure: ExposureName, time_s: Option<f64>) -> Result<Job> {
         let scene = self.load()?;
         Ok(Job {
             technique: self.technique()?,
@@ -109,17 +109,17 @@ impl Drawing {
     }
 
     /// The technique with its knobs; one that it does not have is refused.
-    pub fn technique(&self) -> Result<Technique> {
+    pub(crate) fn technique(&self) -> Result<Technique> {
         Technique::parse(&self.technique, &self.turned.0).map_err(render_error)
     }
 
     /// Reads and validates the scene; every problem is named.
-    pub fn load(&self) -> Result<Scene> {
+    pub(crate) fn load(&self) -> Result<Scene> {
         shipped::scene(&self.scene).map_err(bad_input)
     }
 
     /// The image asked for.
-    pub fn view(&self, theatre: &Theatre) -> View {
+    pub(crate) fn view(&self, theatre: &Theatre) -> View {
         let pixel = match self.pixel {
             PixelName::Area => Pixel::Area,
             PixelName::Centre => Pixel::Centre,
@@ -131,7 +131,7 @@ impl Drawing {
 }
 
 /// Errors of drawing: what the user can mend is bad input, a failing disk or GPU is not.
-pub fn render_error(error: RenderError) -> anyhow::Error {
+pub(super) fn render_error(error: RenderError) -> anyhow::Error {
     match error {
         RenderError::Inapplicable { .. } | RenderError::View(_) | RenderError::Knob(_) => bad_input(error),
         other => anyhow::Error::new(other),
@@ -139,7 +139,7 @@ pub fn render_error(error: RenderError) -> anyhow::Error {
 }
 
 /// WIDTHxHEIGHT.
-pub fn parse_size(text: &str) -> Result<[usize; 2], String> {
+pub(super) fn parse_size(text: &str) -> Result<[usize; 2], String> {
     let rule = || format!("{text:?} is no size: write WIDTHxHEIGHT in pixels, as in 1920x1080");
     let (width, height) = text.split_once('x').ok_or_else(rule)?;
     let size = [width.parse().map_err(|_| rule())?, height.parse().map_err(|_| rule())?];
@@ -147,6 +147,6 @@ pub fn parse_size(text: &str) -> Result<[usize; 2], String> {
 }
 
 /// auto, cpu or gpu.
-pub fn parse_backend(text: &str) -> Result<Backend, String> {
+pub(super) fn parse_backend(text: &str) -> Result<Backend, String> {
     text.parse().map_err(|error: RenderError| error.to_string())
 }

@@ -18,7 +18,7 @@ use crate::output::print;
 
 /// Arguments of `kelir export`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Id of the study, as in its address.
     study: String,
     #[command(flatten)]
@@ -51,7 +51,7 @@ enum Table {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args) -> Result<()> {
     let is_spreadsheet = args
         .output
         .as_ref()

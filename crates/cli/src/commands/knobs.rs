@@ -9,7 +9,7 @@ use kelir_render::techniques::knobs::Knob;
 use serde_json::Value;
 
 /// The knobs that are turned, by name. Whether the technique has them, and their ranges, [`Technique::parse`] knows.
-pub struct Turned(pub BTreeMap<String, Value>);
+pub(super) struct Turned(pub BTreeMap<String, Value>);
 
 /// Every knob with the names of the techniques that have it.
 fn every() -> Vec<(&'static Knob, Vec<&'static str>)> {

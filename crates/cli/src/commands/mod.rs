@@ -1,20 +1,20 @@
 //! One module a command.
 
-pub mod animate;
-pub mod bench;
-pub mod chain;
+pub(crate) mod animate;
+pub(crate) mod bench;
+pub(crate) mod chain;
 mod checked;
 mod drawing;
-pub mod export;
+pub(crate) mod export;
 mod knobs;
-pub mod new;
-pub mod paper;
-pub mod power;
-pub mod render;
-pub mod report;
-pub mod scene;
-pub mod serve;
-pub mod stats;
+pub(crate) mod new;
+pub(crate) mod paper;
+pub(crate) mod power;
+pub(crate) mod render;
+pub(crate) mod report;
+pub(crate) mod scene;
+pub(crate) mod serve;
+pub(crate) mod stats;
 mod stored;
-pub mod study;
-pub mod technique;
+pub(crate) mod study;
+pub(crate) mod technique;

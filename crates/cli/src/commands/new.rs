@@ -10,7 +10,7 @@ use crate::output::print;
 
 /// Arguments of `kelir new`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Folder to write; it must not exist, or be empty.
     dir: PathBuf,
 }
@@ -27,7 +27,7 @@ const FILES: [(&str, &str); 7] = [
 ];
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args) -> Result<()> {
     let dir = std::path::absolute(&args.dir).with_context(|| args.dir.display().to_string())?;
     let Some(parent) = dir.parent() else {
         return Err(bad_input(format!(

@@ -8,7 +8,7 @@ use crate::output::{print, print_json};
 
 /// Arguments of `kelir paper`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Which paper.
     #[arg(value_enum)]
     paper: Paper,
@@ -25,7 +25,7 @@ enum Paper {
 }
 
 /// Runs the command.
-pub fn run(args: Args) -> Result<()> {
+pub(crate) fn run(args: Args) -> Result<()> {
     let Paper::TaylorCameron = args.paper;
     let replication = taylor_cameron()?;
     if args.json {

@@ -12,7 +12,7 @@ use crate::{bad_input, progress};
 
 /// Arguments of `kelir power`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Design file (TOML), or the name of one that ships: the study, what is supposed to be true, the numbers of participants to try.
     #[arg(long, value_name = "DESIGN")]
     design: PathBuf,
@@ -21,7 +21,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args) -> Result<()> {
     let design = read(&args.design)?;
     let bar = progress::bar(design.simulations, "simulated studies");
     let found = power(&design, &|done| bar.set_position(done));

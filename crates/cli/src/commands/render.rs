@@ -16,7 +16,7 @@ use crate::progress;
 
 /// Arguments of `kelir render`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     drawing: Drawing,
     #[command(flatten)]
@@ -38,7 +38,7 @@ enum Container {
 }
 
 /// Runs the command.
-pub fn run(args: Args) -> Result<()> {
+pub(crate) fn run(args: Args) -> Result<()> {
     let container = match args.output.extension().and_then(|end| end.to_str()) {
         Some("png") => Container::Png,
         Some("exr") => Container::Exr,

@@ -11,7 +11,7 @@ use crate::bad_input;
 
 /// Arguments of `kelir report`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Id of the study, as in its address.
     study: String,
     #[command(flatten)]
@@ -28,7 +28,7 @@ enum Kind {
 }
 
 /// Runs the command.
-pub fn run(args: Args) -> Result<()> {
+pub(crate) fn run(args: Args) -> Result<()> {
     let kind = kind(&args.output)?;
     if let Some(folder) = args.output.parent().filter(|p| !p.as_os_str().is_empty() && !p.is_dir()) {
         return Err(bad_input(format!(

@@ -14,7 +14,7 @@ use crate::output::{print, print_json, table};
 
 /// Subcommands of `kelir scene`.
 #[derive(clap::Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Validate scene files: every problem is named by file, field, value and rule.
     Check {
         /// Scene files (TOML), or names of scenes that ship.
@@ -33,7 +33,7 @@ pub enum Command {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command) -> Result<()> {
     match command {
         Command::Check { files, json } => check(&files, json),
         Command::List { json } => list(json),

@@ -17,7 +17,7 @@ use crate::{bad_input, progress};
 
 /// Arguments of `kelir serve`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Folder of the database, the stimuli, own studies and the researcher's password; made if it does not exist.
     #[arg(long)]
     data: PathBuf,
@@ -34,7 +34,7 @@ pub struct Args {
 }
 
 /// Runs the command until it is interrupted.
-pub fn run(args: Args) -> Result<()> {
+pub(crate) fn run(args: Args) -> Result<()> {
     let log = Log::begin(&args.data);
     let runtime = tokio::runtime::Runtime::new()?;
     let served = runtime.block_on(serve(args, log.file.as_deref()));

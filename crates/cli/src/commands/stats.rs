@@ -12,7 +12,7 @@ use crate::output::{Format, Printed, csv, print, print_json, table};
 /// Arguments of `kelir stats`.
 #[derive(clap::Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(subcommand)]
     test: Option<Test>,
     /// Id of the study, as in its address.
@@ -60,7 +60,7 @@ enum Test {
 struct Counts(Vec<(f64, u64)>);
 
 /// Runs the command.
-pub fn run(args: Args) -> Result<()> {
+pub(crate) fn run(args: Args) -> Result<()> {
     match (args.test, args.study) {
         (Some(Test::Ttest { counts, mu, printed }), _) => {
             let test = t_test_from_counts(&counts.0, mu).map_err(bad_input)?;

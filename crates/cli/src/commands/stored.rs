@@ -12,7 +12,7 @@ use crate::bad_input;
 
 /// A study in a data folder.
 #[derive(clap::Args)]
-pub struct Stored {
+pub(super) struct Stored {
     /// The server's data folder; it may be running.
     #[arg(long, default_value = "data")]
     pub data: PathBuf,
@@ -22,7 +22,7 @@ pub struct Stored {
 
 /// Which versions of a study.
 #[derive(clap::Args)]
-pub struct Versions {
+pub(super) struct Versions {
     /// Version of the study: its hash, the beginning of it (8 digits or more), or `current`, the one served last.
     /// `kelir study versions` lists them.
     #[arg(long, default_value = "current", value_parser = parse::<VersionRef>)]
@@ -40,12 +40,12 @@ fn parse<T: std::str::FromStr<Err = SelectionError>>(text: &str) -> Result<T, St
 }
 
 /// Runs what reads a data folder to its end.
-pub fn block_on<T>(work: impl Future<Output = Result<T>>) -> Result<T> {
+pub(super) fn block_on<T>(work: impl Future<Output = Result<T>>) -> Result<T> {
     tokio::runtime::Builder::new_current_thread().enable_all().build()?.block_on(work)
 }
 
 /// An unknown folder, study or version is bad input; a failing disk is not.
-pub fn results_error(error: ResultsError) -> anyhow::Error {
+pub(super) fn results_error(error: ResultsError) -> anyhow::Error {
     match error {
         ResultsError::Store(_) | ResultsError::Selection(SelectionError::Store(_)) => error.into(),
         _ => bad_input(error),
@@ -54,7 +54,7 @@ pub fn results_error(error: ResultsError) -> anyhow::Error {
 
 impl Stored {
     /// The full report of the versions asked for.
-    pub fn report(&self, study: &str) -> Result<StudyReport> {
+    pub(super) fn report(&self, study: &str) -> Result<StudyReport> {
         block_on(async {
             let (store, selection) = self.open(study).await?;
             let report = results::report(&store, &selection).await;
@@ -64,7 +64,7 @@ impl Stored {
     }
 
     /// The store of the data folder, with the versions asked for.
-    pub async fn open(&self, study: &str) -> Result<(Store, Selection)> {
+    pub(super) async fn open(&self, study: &str) -> Result<(Store, Selection)> {
         let store = results::open_study(&self.data, study).await.map_err(results_error)?;
         let Versions { version, with, include } = &self.versions;
         let selection = Selection::of(&store, study, None, version, with).await;

@@ -17,7 +17,7 @@ use crate::output::{Format, Printed, csv, print, print_json, table};
 
 /// Subcommands of `kelir study`.
 #[derive(clap::Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Do all that serving will do, small: open each scene and picture, draw each stimulus, fill in each placeholder. Every problem is named by
     /// file, field, value and rule.
     Check {
@@ -62,7 +62,7 @@ pub enum Command {
 
 /// What a link is for.
 #[derive(Clone, Copy, clap::ValueEnum)]
-pub enum LinkKind {
+pub(crate) enum LinkKind {
     /// Stored, counted apart, left out of every analysis.
     Pilot,
     /// Nothing is stored.
@@ -70,7 +70,7 @@ pub enum LinkKind {
 }
 
 /// Runs the command.
-pub fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command) -> Result<()> {
     match command {
         Command::Check { files, json } => check(&files, json),
         Command::Link { study, kind, days, data, base, json } => {

@@ -10,7 +10,7 @@ use crate::output::{print, print_json, table};
 
 /// Which technique, and how it is told.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The technique whose knobs are listed; without one, all techniques.
     name: Option<String>,
     /// Print one JSON document.
@@ -19,7 +19,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args) -> Result<()> {
     let techniques = match &args.name {
         Some(name) => vec![Technique::parse(name, &Default::default()).map_err(render_error)?],
         None => Technique::all().into(),

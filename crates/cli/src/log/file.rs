@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use kelir_store::private_file;
 
 /// Is appended to; once it is full it is put aside under the name `….1`, in place of the one that was put aside before.
-pub struct BoundedFile {
+pub(super) struct BoundedFile {
     path: PathBuf,
     most_bytes: u64,
     open: Option<(File, u64)>,
@@ -15,7 +15,7 @@ pub struct BoundedFile {
 
 impl BoundedFile {
     /// The file is opened when something is written, and anew after it could not be written.
-    pub fn new(path: &Path, most_bytes: u64) -> BoundedFile {
+    pub(super) fn new(path: &Path, most_bytes: u64) -> BoundedFile {
         BoundedFile { path: path.to_owned(), most_bytes, open: None }
     }
 

@@ -23,7 +23,7 @@ const NAME: &str = "server.log";
 const MOST_BYTES: u64 = 8 << 20;
 
 /// A log that has begun.
-pub struct Log {
+pub(crate) struct Log {
     writers: Vec<Writer>,
     /// The file that has all of it, where standard error has not.
     pub file: Option<PathBuf>,
@@ -32,7 +32,7 @@ pub struct Log {
 impl Log {
     /// Begins the log of a server on a data folder. `KELIR_LOG` says what standard error gets; without it all, or warnings alone where it is a
     /// terminal, and then all goes into a file.
-    pub fn begin(data: &Path) -> Log {
+    pub(crate) fn begin(data: &Path) -> Log {
         let asked = EnvFilter::try_from_env("KELIR_LOG").ok();
         let file = (asked.is_none() && io::stderr().is_terminal()).then(|| data.join(NAME));
         let level = if file.is_some() { LevelFilter::WARN } else { LevelFilter::INFO };
@@ -46,7 +46,7 @@ impl Log {
     }
 
     /// Waits until what was said is written, for at most `limit` each.
-    pub fn flush(&self, limit: Duration) {
+    pub(crate) fn flush(&self, limit: Duration) {
         self.writers.iter().for_each(|writer| writer.flush(limit));
     }
 }

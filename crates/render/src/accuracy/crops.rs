@@ -21,7 +21,7 @@ pub struct Crop {
 
 /// `[count, side]` crops: of the image's tiles of that side the ones that have the largest share of penumbra pixels (at least half, where there
 /// are such), `count` of them evenly spaced in reading order.
-pub fn choose(penumbra: &[bool], [width, height]: [usize; 2], [count, side]: [usize; 2]) -> Vec<Crop> {
+pub(super) fn choose(penumbra: &[bool], [width, height]: [usize; 2], [count, side]: [usize; 2]) -> Vec<Crop> {
     if count == 0 || side == 0 {
         return Vec::new();
     }
@@ -40,7 +40,7 @@ pub fn choose(penumbra: &[bool], [width, height]: [usize; 2], [count, side]: [us
 }
 
 /// The oracle's crops, one after the other.
-pub struct Truth {
+pub(super) struct Truth {
     pub crops: Vec<Crop>,
     width: usize,
     /// Pixels of all crops, as indices into the image.
@@ -56,7 +56,7 @@ pub struct Truth {
 
 impl Truth {
     /// Errors: what the oracle refuses.
-    pub fn draw(
+    pub(super) fn draw(
         theatre: &Theatre,
         view: &View,
         albedo: &PixelAlbedo,
@@ -90,7 +90,7 @@ impl Truth {
     }
 
     /// A frame's errors over the crops; `irradiance` is the whole image's, three planes.
-    pub fn measure(
+    pub(super) fn measure(
         &self,
         frame: &Frame,
         irradiance: &[f64],

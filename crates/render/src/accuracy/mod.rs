@@ -24,7 +24,7 @@ pub use report::{CaseReport, Measured, OnCrops, Oracle, Outcome, Reference, Repo
 
 use crate::exposure::Rule;
 use crate::job::{Spread, irradiance};
-use crate::subject::Subject;
+use crate::subject::{Staged, Subject};
 use crate::{Backend, Frame, RenderError, Technique, View, albedo, encode, mc, penumbra, renderer};
 use crops::Truth;
 use images::Seen;
@@ -115,7 +115,7 @@ pub fn measure(
     options.check(cases)?;
     let view = &options.view;
     let theatre = &scene.still();
-    view.check(theatre)?;
+    view.check(theatre.sides_m())?;
     let total = cases.len() * options.backends.len() + 2;
     let mut step = |done, what: &str| progress(Progress { done, total, what });
 
@@ -145,7 +145,7 @@ pub fn measure(
     };
 
     step(1, "oracle");
-    let white = Rule::Still.white(scene, view, None);
+    let white = scene.white(Rule::Still, view, None);
     let chosen = crops::choose(&penumbra, view.size, options.crops);
     let truth = match Truth::draw(theatre, view, &albedo, chosen, options.tolerance) {
         Ok(truth) => Ok(truth),

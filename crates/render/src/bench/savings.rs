@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::{median, slid};
 use crate::exposure::Rule;
 use crate::pa::{Knobs, Native, Skips};
+use crate::subject::Staged;
 use crate::{RenderError, Renderer, View};
 
 /// A sliding puppet drawn with every skip, and with every skip but one.
@@ -25,7 +26,7 @@ pub struct Saving {
 
 /// Every skip of PA's native code alone; both ways frame by frame in turn, so that a busy machine slows both. Errors: as drawing.
 pub fn savings(scene: &Scene, knobs: &Knobs, view: &View, frames: usize) -> Result<Vec<Saving>, RenderError> {
-    let (still, white) = (scene.still(), Rule::Still.white(scene, view, None));
+    let (still, white) = (scene.still(), scene.white(Rule::Still, view, None));
     let mut out = vec![0; view.size[0] * view.size[1]];
     let mut savings = Vec::new();
     for (skip, name, counter) in Skips::EACH {

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::{quantile, slid, timed};
 use crate::exposure::Rule;
+use crate::subject::Staged;
 use crate::{Backend, RenderError, Technique, View, pa, renderer};
 
 /// One line of the table: a sliding puppet with one thing changed.
@@ -31,7 +32,7 @@ pub fn scaling(
     frames: usize,
 ) -> Result<Vec<Scaled>, RenderError> {
     let still = scene.still();
-    let white = Rule::Still.white(scene, view, None);
+    let white = scene.white(Rule::Still, view, None);
     let one = |theatre: &Theatre, technique: &Technique, view: &View| {
         let mut drawing = renderer(technique, backend)?;
         let phase = |k: usize| k as f64 / frames.max(1) as f64;

@@ -35,8 +35,8 @@ impl<'j, S: Staged> Drawing<'j, S> {
         job.check()?;
         job.frames()?;
         let renderer = S::renderer(&job.technique, job.backend)?;
-        job.view.check(&job.scene.still())?;
-        let white = job.exposure.white(&job.scene, &job.view, job.time_s);
+        job.view.check(job.scene.still().sides_m())?;
+        let white = job.scene.white(job.exposure, &job.view, job.time_s);
         let codes = vec![0; job.view.size[0] * job.view.size[1]];
         Ok(Self { job, renderer, white, codes, last: None, kept: S::Kept::default() })
     }

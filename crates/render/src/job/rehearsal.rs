@@ -26,7 +26,7 @@ pub fn rehearse<S: Staged>(mut job: Job<S>) -> (S, Result<(), RenderError>) {
 /// How many frames the job has, if its settings and its view at full size are possible.
 fn possible<S: Staged>(job: &Job<S>) -> Result<usize, RenderError> {
     job.check()?;
-    job.view.check(&job.scene.still())?;
+    job.view.check(job.scene.still().sides_m())?;
     job.frames()
 }
 

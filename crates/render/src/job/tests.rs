@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use kelir_scene::{Assets, Masks};
 
 use super::*;
-use crate::{encode, exposure, mc, oracle, pa};
+use crate::{encode, mc, oracle, pa};
 
 struct Files(BTreeMap<String, Vec<u8>>);
 
@@ -162,20 +162,17 @@ fn each_rule_of_exposure_by_its_definition() {
     let mut job = job(LAMP, pa(), Output::Still);
     let view = job.view;
     let at: Vec<f64> = (0..4)
-        .map(|k| exposure::white([&job.scene.theatre_at(0.1 * f64::from(k), &mut Masks::default())], &view))
+        .map(|k| crate::white([&job.scene.theatre_at(0.1 * f64::from(k), &mut Masks::default())], &view))
         .collect();
-    let white = |rule: Rule, time_s| rule.white(&job.scene, &view, time_s);
-    assert_eq!(white(Rule::Still, None), exposure::white([&job.scene.still()], &view));
+    let white = |rule: Rule, time_s| job.scene.white(rule, &view, time_s);
+    assert_eq!(white(Rule::Still, None), crate::white([&job.scene.still()], &view));
     assert_eq!(white(Rule::Still, Some(0.2)), at[2]);
     for time_s in [None, Some(0.2)] {
         assert_eq!(white(Rule::Timeline, time_s), at[3], "the lamp is nearest at the end");
     }
     assert!(white(Rule::Still, None) < at[0] && at[0] < at[2] && at[2] < at[3], "{at:?}");
     job = self::job("", pa(), Output::Still);
-    assert_eq!(
-        Rule::Timeline.white(&job.scene, &view, None),
-        Rule::Still.white(&job.scene, &view, Some(0.3))
-    );
+    assert_eq!(job.scene.white(Rule::Timeline, &view, None), job.scene.white(Rule::Still, &view, Some(0.3)));
 }
 
 #[test]

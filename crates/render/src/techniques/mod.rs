@@ -1,16 +1,12 @@
-//! The techniques: adding one is a new folder here, one variant of [`Technique`] and one line in each `match` on it.
+//! The techniques: adding one is a new folder in kelir-theatre, one variant of [`Technique`] and one line in each `match` on it.
 
 pub mod knobs;
-pub mod mc;
-pub mod oracle;
-pub mod pa;
-pub mod pcss;
-pub mod points;
 
+use kelir_frame::{Backend, RenderError, Renderer};
+use kelir_scene::Theatre;
+use kelir_theatre::{mc, oracle, pa, pcss, points};
 use knobs::Knob;
 use serde::{Deserialize, Serialize};
-
-use crate::{RenderError, Renderer};
 
 /// What draws: every technique with its knobs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -113,34 +109,8 @@ impl Technique {
     }
 }
 
-/// Where it draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Backend {
-    /// A real GPU where there is one, else the native code.
-    #[default]
-    Auto,
-    /// Native code on all cores.
-    Cpu,
-    /// wgpu compute, on whatever adapter there is, also a software one.
-    Gpu,
-}
-
-impl std::str::FromStr for Backend {
-    type Err = RenderError;
-
-    fn from_str(s: &str) -> Result<Self, Self::Err> {
-        match s {
-            "auto" => Ok(Self::Auto),
-            "cpu" => Ok(Self::Cpu),
-            "gpu" => Ok(Self::Gpu),
-            _ => Err(RenderError::Knob(format!("backend = {s:?}: one of auto, cpu, gpu"))),
-        }
-    }
-}
-
 /// A renderer for `technique`. Errors: a knob out of range, or `Backend::Gpu` without any adapter.
-pub fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Renderer>, RenderError> {
+pub fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Renderer<Theatre>>, RenderError> {
     match technique {
         Technique::Pa(knobs) => pa::renderer(knobs, backend),
         Technique::Mc(knobs) => mc::renderer(knobs, backend),

@@ -60,7 +60,7 @@ fn slid(theatre: &Theatre) -> Theatre {
 }
 
 /// Display codes of the second of two frames, so that what is kept between frames is used, and what was skipped.
-fn second(drawing: &mut dyn Renderer, theatre: &Theatre, skip: bool) -> Option<(Vec<u32>, Stats)> {
+fn second(drawing: &mut dyn Renderer<Theatre>, theatre: &Theatre, skip: bool) -> Option<(Vec<u32>, Stats)> {
     let view = View { skip, ..VIEW };
     let white = white([theatre], &view);
     let mut out = vec![0; view.size[0] * view.size[1]];
@@ -70,7 +70,7 @@ fn second(drawing: &mut dyn Renderer, theatre: &Theatre, skip: bool) -> Option<(
 }
 
 /// All floats of a frame, as bits.
-fn bits(drawing: &mut dyn Renderer, theatre: &Theatre, skip: bool) -> Vec<u32> {
+fn bits(drawing: &mut dyn Renderer<Theatre>, theatre: &Theatre, skip: bool) -> Vec<u32> {
     let frame = drawing.radiance(theatre, &View { skip, ..VIEW }).unwrap();
     frame.channels().flat_map(|(_, values)| values).map(|v| v.to_bits()).collect()
 }

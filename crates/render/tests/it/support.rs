@@ -10,7 +10,7 @@ use kelir_scene::{
 };
 
 /// A scene that ships: its name, the theatre as written, and one later instant of its timeline.
-pub struct Shipped {
+pub(crate) struct Shipped {
     pub name: String,
     pub sha256: String,
     pub still: Theatre,
@@ -18,7 +18,7 @@ pub struct Shipped {
 }
 
 /// Every scene that ships, read once.
-pub fn shipped() -> &'static [Shipped] {
+pub(crate) fn shipped() -> &'static [Shipped] {
     static SCENES: OnceLock<Vec<Shipped>> = OnceLock::new();
     SCENES.get_or_init(|| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../stimuli/scenes");
@@ -40,7 +40,7 @@ pub fn shipped() -> &'static [Shipped] {
 }
 
 /// A figure with soft edges and holes at texel pitch.
-pub fn figure(side: usize, channels: usize) -> Mask {
+pub(crate) fn figure(side: usize, channels: usize) -> Mask {
     let n = side as f64;
     let texel = |c: usize, x: usize, y: usize| {
         let (u, v) = (x as f64 / n - 0.45, y as f64 / n - 0.5);
@@ -54,12 +54,12 @@ pub fn figure(side: usize, channels: usize) -> Mask {
 }
 
 /// A square puppet.
-pub fn plane(mask: Mask, centre_m: [f64; 3], height_m: f64) -> Plane {
+pub(crate) fn plane(mask: Mask, centre_m: [f64; 3], height_m: f64) -> Plane {
     Plane { mask: Arc::new(mask), centre_m: DVec3::from(centre_m), size_m: [height_m; 2], tilt_deg: [0.0; 2] }
 }
 
 /// Two emitters before a coloured screen.
-pub fn theatre(planes: Vec<Plane>) -> Theatre {
+pub(crate) fn theatre(planes: Vec<Plane>) -> Theatre {
     let emitter = |name: &str, side: f64, radiance: f64| Emitter {
         name: name.into(),
         shape: EmitterShape::Rectangle { size_m: [side, 0.8 * side] },

@@ -9,10 +9,10 @@ use kelir_study::screening::screen;
 use serde_json::json;
 
 /// R 4.2.2: `t.test(rep(0:2, c(12, 14, 11)), mu = 1)$statistic`.
-pub const T_OF_12_14_11: f64 = -0.20579830217101017;
+pub(crate) const T_OF_12_14_11: f64 = -0.20579830217101017;
 
 /// A study and what each of its participants answered: (pair, condition chosen, response time in ms).
-pub struct Study {
+pub(crate) struct Study {
     pub title: String,
     pub question: String,
     pub block_title: String,
@@ -63,7 +63,7 @@ impl Default for Study {
 }
 
 /// The paper's design; per block how many participants chose the target 0, 1 and 2 times. Who chose it once did so in the first pair.
-pub fn paper(counts: [[usize; 3]; 3]) -> Study {
+pub(crate) fn paper(counts: [[usize; 3]; 3]) -> Study {
     let blocks: [&[(&str, &str)]; 3] = [
         &[("still-a", "mc"), ("still-b", "mc")],
         &[("photo-a", "photo"), ("photo-b", "photo")],
@@ -89,7 +89,7 @@ pub fn paper(counts: [[usize; 3]; 3]) -> Study {
 }
 
 /// psignifit's golden numbers: 96, 95, 84, 72, 58, 50 of 100 at log10 triangles 2.48 … 3.8.
-pub fn levels() -> Study {
+pub(crate) fn levels() -> Study {
     let items: Vec<String> = LEVELS
         .iter()
         .map(|(id, level, _)| format!("{{ id = \"{id}\", scene = \"a.toml\", level = {level} }}"))
@@ -106,7 +106,7 @@ pub fn levels() -> Study {
 }
 
 /// Three conditions, each compared with each other one; `circular` participants choose in a circle, `straight` ones do not.
-pub fn triangle(circular: usize, straight: usize) -> Study {
+pub(crate) fn triangle(circular: usize, straight: usize) -> Study {
     let block = |id: &str, a: &str, b: &str| {
         format!(
             "[[blocks]]\nid = \"{id}\"\ntitle = TITLE\nkind = \"still\"\nconditions = [\"{a}\", \"{b}\"]\ntarget = \"{a}\"\n\
@@ -123,7 +123,7 @@ pub fn triangle(circular: usize, straight: usize) -> Study {
 }
 
 /// A study whose every free text attacks whatever shows it.
-pub fn hostile() -> Study {
+pub(crate) fn hostile() -> Study {
     let evil = "=cmd|' /C calc'!A0 <script>alert('1')</script> | *a* [b](javascript:alert(1)) \"><img src=x onerror=alert(1)> \u{1b}[31m";
     let mut study = paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]);
     (study.title, study.question, study.block_title) = (evil.to_owned(), evil.to_owned(), evil.to_owned());
@@ -131,7 +131,7 @@ pub fn hostile() -> Study {
 }
 
 impl Study {
-    pub fn report(&self) -> StudyReport {
+    pub(crate) fn report(&self) -> StudyReport {
         // What the file itself may not hold comes from elsewhere: the report relies on no reader.
         let plain = |text: &str| text.replace(char::is_control, "");
         let quoted = |text: &str| serde_json::to_string(&plain(text)).unwrap();
@@ -228,7 +228,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
 }
 
 /// Centres of an SVG's disks, in order.
-pub fn svg_disks(svg: &str) -> Vec<(f64, f64)> {
+pub(crate) fn svg_disks(svg: &str) -> Vec<(f64, f64)> {
     let attribute = |tag: &str, name: &str| -> f64 {
         tag.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
     };
@@ -242,7 +242,7 @@ pub fn svg_disks(svg: &str) -> Vec<(f64, f64)> {
 }
 
 /// The cells of a CSV, without its header's.
-pub fn cells(csv: &str) -> Vec<String> {
+pub(crate) fn cells(csv: &str) -> Vec<String> {
     let rows = csv::Reader::from_reader(csv.as_bytes()).into_records().map(Result::unwrap);
     rows.flat_map(|row| row.iter().map(str::to_owned).collect::<Vec<_>>()).collect()
 }

@@ -40,7 +40,7 @@ pub(crate) struct Bitmap {
 }
 
 impl Bitmap {
-    pub fn open(bytes: &[u8]) -> Result<Self, String> {
+    pub(crate) fn open(bytes: &[u8]) -> Result<Self, String> {
         let image = match decode(bytes)? {
             // What has few colours or none becomes RGBA; 16-bit images keep their depth.
             image @ (DynamicImage::ImageRgba8(_) | DynamicImage::ImageRgba16(_)) => image,
@@ -57,12 +57,12 @@ impl Bitmap {
     }
 
     /// [columns, rows].
-    pub fn size(&self) -> [usize; 2] {
+    pub(crate) fn size(&self) -> [usize; 2] {
         [self.image.width() as usize, self.image.height() as usize]
     }
 
     /// Opacities α(1 − T) on the lattice: copied where it is the image's own, else the mean over each texel's area.
-    pub fn texture(&self, lattice: &Lattice, translucent: bool) -> Texture {
+    pub(crate) fn texture(&self, lattice: &Lattice, translucent: bool) -> Texture {
         let [width, height] = self.size();
         let within = Rect::of_size(lattice.columns, lattice.rows);
         match &self.image {

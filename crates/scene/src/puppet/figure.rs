@@ -69,7 +69,7 @@ struct Joint {
 
 impl Figure {
     /// `textures` has one texture a part, in drawing order. A part without a pivot turns about the figure's centre.
-    pub fn new(
+    pub(crate) fn new(
         lattice: Lattice,
         origin: [f64; 2],
         parts: &[Part],
@@ -90,12 +90,12 @@ impl Figure {
     }
 
     /// 1 or 3.
-    pub fn channels(&self) -> usize {
+    pub(crate) fn channels(&self) -> usize {
         self.channels
     }
 
     /// Which parts move when those of `posed` do: they and all that hangs on them.
-    pub fn followers(&self, posed: &[bool]) -> Vec<bool> {
+    pub(crate) fn followers(&self, posed: &[bool]) -> Vec<bool> {
         (0..self.textures.len())
             .map(|part| self.chain(part).any(|p| posed.get(p).copied().unwrap_or(false)))
             .collect()
@@ -119,7 +119,7 @@ impl Figure {
     }
 
     /// The grid of a pose: the rest grid and every moved part, or the parts alone when the whole figure is turned.
-    pub fn extent(&self, pose: &Pose) -> Rect {
+    pub(crate) fn extent(&self, pose: &Pose) -> Rect {
         let rest = Rect::of_size(self.lattice.columns, self.lattice.rows);
         let parts = (0..self.textures.len())
             .map(|part| self.motion(part, pose).bounds(self.textures[part].rect))
@@ -129,7 +129,7 @@ impl Figure {
     }
 
     /// Centre of a pose's grid from the figure's centre, u right and v up, and its full size; in texels.
-    pub fn placement(&self, extent: Rect) -> ([f64; 2], [f64; 2]) {
+    pub(crate) fn placement(&self, extent: Rect) -> ([f64; 2], [f64; 2]) {
         let [cx, cy] = self.lattice.centre();
         let middle = |a: i64, b: i64| 0.5 * (a + b) as f64;
         let centre = [middle(extent.x0, extent.x1) - cx, cy - middle(extent.y0, extent.y1)];
@@ -137,7 +137,7 @@ impl Figure {
     }
 
     /// Fixes which parts may move from now on, multiplies the others, as `pose` has them, once and for all, and draws that pose.
-    pub fn settle(&mut self, moving: Vec<bool>, pose: &Pose) -> Posed {
+    pub(crate) fn settle(&mut self, moving: Vec<bool>, pose: &Pose) -> Posed {
         if !moving.contains(&true) {
             // One mask is all there will be: draw it from the parts, and keep nothing else.
             let rest = self.posed(pose, None);
@@ -164,17 +164,17 @@ impl Figure {
     }
 
     /// The pose that it was settled in.
-    pub fn rest(&self) -> Option<&Posed> {
+    pub(crate) fn rest(&self) -> Option<&Posed> {
         self.rest.as_ref()
     }
 
     /// Bytes of a mask that covers the texels of `extent`.
-    pub fn bytes(&self, extent: Rect) -> usize {
+    pub(crate) fn bytes(&self, extent: Rect) -> usize {
         extent.area() * self.channels * (self.bits as usize / 8)
     }
 
     /// Draws a pose, into texels that nobody needs any more where there are some.
-    pub fn posed(&self, pose: &Pose, spent: Option<Texels>) -> Posed {
+    pub(crate) fn posed(&self, pose: &Pose, spent: Option<Texels>) -> Posed {
         let extent = self.extent(pose);
         let texels = match (self.bits, spent) {
             (16, Some(Texels::U16(codes))) => Texels::U16(self.draw(extent, pose, codes)),

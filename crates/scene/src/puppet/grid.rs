@@ -15,31 +15,31 @@ pub(crate) struct Rect {
 }
 
 impl Rect {
-    pub const EMPTY: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
+    pub(crate) const EMPTY: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
 
     /// From the origin.
-    pub fn of_size(width: usize, height: usize) -> Self {
+    pub(crate) fn of_size(width: usize, height: usize) -> Self {
         Self { x0: 0, y0: 0, x1: width as i64, y1: height as i64 }
     }
 
-    pub fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         usize::try_from(self.x1 - self.x0).unwrap_or(0)
     }
 
-    pub fn height(&self) -> usize {
+    pub(crate) fn height(&self) -> usize {
         usize::try_from(self.y1 - self.y0).unwrap_or(0)
     }
 
-    pub fn area(&self) -> usize {
+    pub(crate) fn area(&self) -> usize {
         self.width() * self.height()
     }
 
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.x1 <= self.x0 || self.y1 <= self.y0
     }
 
     /// The smallest rectangle that holds both.
-    pub fn union(self, other: Rect) -> Rect {
+    pub(crate) fn union(self, other: Rect) -> Rect {
         match (self.is_empty(), other.is_empty()) {
             (true, _) => other,
             (_, true) => self,
@@ -68,7 +68,7 @@ pub(crate) struct Lattice {
 
 impl Lattice {
     /// `rows` square texels over a drawing `size` user units large, whole columns around its centre.
-    pub fn new(size: [f64; 2], rows: usize) -> Self {
+    pub(crate) fn new(size: [f64; 2], rows: usize) -> Self {
         let scale = rows as f64 / size[1];
         let width = size[0] * scale;
         // A width that is whole but for rounding errors needs no further column.
@@ -78,12 +78,12 @@ impl Lattice {
     }
 
     /// Lattice coordinates of a point of the drawing, given from the drawing's top left corner.
-    pub fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x * self.scale + self.margin, y * self.scale]
     }
 
     /// The centre of the drawing and of the rest grid.
-    pub fn centre(&self) -> [f64; 2] {
+    pub(crate) fn centre(&self) -> [f64; 2] {
         [0.5 * self.columns as f64, 0.5 * self.rows as f64]
     }
 }
@@ -97,10 +97,10 @@ pub(crate) struct Rigid {
 }
 
 impl Rigid {
-    pub const IDENTITY: Rigid = Rigid { cos: 1.0, sin: 0.0, shift: [0.0; 2] };
+    pub(crate) const IDENTITY: Rigid = Rigid { cos: 1.0, sin: 0.0, shift: [0.0; 2] };
 
     /// A turn about `pivot`, exact for multiples of 90°; whole turns are the identity itself.
-    pub fn turn(pivot: [f64; 2], degrees: f64) -> Self {
+    pub(crate) fn turn(pivot: [f64; 2], degrees: f64) -> Self {
         let turned = degrees.rem_euclid(360.0);
         let (sin, cos) = match turned {
             0.0 | 360.0 => return Self::IDENTITY,
@@ -113,12 +113,12 @@ impl Rigid {
         Self { cos, sin, shift: [x - (cos * x + sin * y), y - (cos * y - sin * x)] }
     }
 
-    pub fn apply(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn apply(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.cos * x + self.sin * y + self.shift[0], self.cos * y - self.sin * x + self.shift[1]]
     }
 
     /// First `inner`, then `self`; the identity changes nothing, to the bit.
-    pub fn after(&self, inner: &Rigid) -> Rigid {
+    pub(crate) fn after(&self, inner: &Rigid) -> Rigid {
         if *self == Self::IDENTITY {
             return *inner;
         }
@@ -132,7 +132,7 @@ impl Rigid {
         }
     }
 
-    pub fn inverse(&self) -> Rigid {
+    pub(crate) fn inverse(&self) -> Rigid {
         let [x, y] = self.shift;
         Rigid {
             cos: self.cos,
@@ -142,7 +142,7 @@ impl Rigid {
     }
 
     /// The texels that `rect` touches once moved and resampled bilinearly (whose support is half a texel wider).
-    pub fn bounds(&self, rect: Rect) -> Rect {
+    pub(crate) fn bounds(&self, rect: Rect) -> Rect {
         if *self == Self::IDENTITY || rect.is_empty() {
             return rect;
         }
@@ -172,7 +172,7 @@ pub(crate) struct Texture {
 
 impl Texture {
     /// The tight texture of what `opacity` gives for the texels of `within`; grey when all three channels are equal.
-    pub fn new(within: Rect, opacity: impl Fn(i64, i64) -> [f32; 3] + Sync) -> Self {
+    pub(crate) fn new(within: Rect, opacity: impl Fn(i64, i64) -> [f32; 3] + Sync) -> Self {
         // Of each row: the first and the end of what is not clear, and whether it is grey.
         type Row = (Option<(i64, i64)>, bool);
         let scan = |y: i64| -> Row {
@@ -207,7 +207,7 @@ impl Texture {
     }
 
     /// A grey texture as a coloured one.
-    pub fn widen(&mut self) {
+    pub(crate) fn widen(&mut self) {
         if self.lanes == 1 {
             self.opacity = self.opacity.iter().flat_map(|&o| [o, o, o, 0.0]).collect();
             self.lanes = 4;
@@ -215,12 +215,12 @@ impl Texture {
     }
 
     /// Texels a row, with the border.
-    pub fn stride(&self) -> usize {
+    pub(crate) fn stride(&self) -> usize {
         self.rect.width() + 2
     }
 
     /// The texels, with the border; L must be the number of lanes.
-    pub fn texels<const L: usize>(&self) -> &[[f32; L]] {
+    pub(crate) fn texels<const L: usize>(&self) -> &[[f32; L]] {
         debug_assert_eq!(L, self.lanes);
         self.opacity.as_chunks().0
     }

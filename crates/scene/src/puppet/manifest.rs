@@ -27,7 +27,7 @@ pub(crate) struct Manifest<'a> {
 }
 
 impl<'a> Manifest<'a> {
-    pub fn read(root: &Node<'a>) -> Option<Self> {
+    pub(crate) fn read(root: &Node<'a>) -> Option<Self> {
         let mut fields = root.table()?;
         let about = [
             ("title", "what it is called"),

@@ -14,7 +14,7 @@ fn config(seed: u64) -> Config {
 }
 
 /// A scene with everything in it.
-pub const FULL: &str = r#"
+pub(crate) const FULL: &str = r#"
 [screen]
 width_m = 1.6
 height_m = 0.9
@@ -64,7 +64,7 @@ target = "puppets[1].position_m"
 keys = [ { t = 0.0, value = [0, 0, -0.2] }, { t = 0.3, value = [0, 0.1, -0.5] } ]
 "#;
 
-pub fn full_files() -> Files {
+pub(crate) fn full_files() -> Files {
     let mut files = files();
     files.insert("puppets/p.png".into(), png(9, 7, |x, y| [20 * x as u8, 30 * y as u8, 99, 28 * x as u8]));
     files
@@ -108,7 +108,7 @@ fn check_plane(plane: &Plane, lamp_z_m: f64) -> Result<(), TestCaseError> {
 }
 
 /// Reads it; if it is accepted, checks the still and some instants of it.
-pub fn read(toml: &str, files: &Files) -> Result<bool, TestCaseError> {
+pub(crate) fn read(toml: &str, files: &Files) -> Result<bool, TestCaseError> {
     match parse(toml, files) {
         Err(errors) => {
             prop_assert!(!errors.is_empty() && !errors.to_string().is_empty());
@@ -141,7 +141,7 @@ pub fn read(toml: &str, files: &Files) -> Result<bool, TestCaseError> {
 
 /// One change of a text's bytes.
 #[derive(Clone, Debug)]
-pub enum Mutation {
+pub(crate) enum Mutation {
     Set(prop::sample::Index, u8),
     Remove(prop::sample::Index, usize),
     Repeat(prop::sample::Index, usize),
@@ -186,7 +186,7 @@ const TOKENS: &[&str] = &[
     "<g>",
 ];
 
-pub fn mutation() -> impl Strategy<Value = Mutation> {
+pub(crate) fn mutation() -> impl Strategy<Value = Mutation> {
     use prop::sample::Index;
     prop_oneof![
         (any::<Index>(), any::<u8>()).prop_map(|(i, b)| Mutation::Set(i, b)),
@@ -196,7 +196,7 @@ pub fn mutation() -> impl Strategy<Value = Mutation> {
     ]
 }
 
-pub fn mutate(bytes: &[u8], mutations: &[Mutation]) -> Vec<u8> {
+pub(crate) fn mutate(bytes: &[u8], mutations: &[Mutation]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for mutation in mutations {
         if bytes.is_empty() {

@@ -13,7 +13,7 @@ fn a_puppet_on_the_audience_side_is_refused_in_the_issues_words() {
     assert_eq!(
         messages(&scene),
         [
-            "scenes/test.toml:27:24: puppets[0].position_m[2] = 0.3: a puppet hangs backstage, between lamp (−1.5) and screen (0)"
+            "scenes/test.toml:26:25: puppets[0].position_m[2] = 0.3: a puppet hangs backstage, between lamp (−1.5) and screen (0)"
         ]
     );
 }

@@ -5,16 +5,16 @@ use std::io::Cursor;
 
 use kelir_scene::{Mask, Problems, Scene};
 
-pub type Files = BTreeMap<String, Vec<u8>>;
+pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
 /// A square in its view box's middle with a bar that turns about the square's centre, and a leaf at the bar's end.
-pub const PUPPET_SVG: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 128 128">
+pub(crate) const PUPPET_SVG: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 128 128">
   <g id="body"><rect x="32" y="32" width="64" height="64" fill="#000"/></g>
   <g id="bar"><rect x="60" y="60" width="56" height="8" fill="#000"/></g>
   <g id="leaf"><rect x="108" y="56" width="16" height="16" fill="#000"/></g>
 </svg>"##;
 
-pub const MANIFEST: &str = r#"
+pub(crate) const MANIFEST: &str = r#"
 title = "A test figure"
 source = "drawn for kelir"
 license = "MIT OR Apache-2.0"
@@ -33,7 +33,7 @@ pivot = [112, 64]
 "#;
 
 /// A valid scene with one articulated puppet.
-pub const SCENE: &str = r#"
+pub(crate) const SCENE: &str = r#"
 [screen]
 width_m = 1.6
 height_m = 0.9
@@ -65,7 +65,7 @@ texels = 128
 white = "auto"
 "#;
 
-pub fn files() -> Files {
+pub(crate) fn files() -> Files {
     let mut files = Files::new();
     files.insert("puppets/figure.svg".into(), PUPPET_SVG.into());
     files.insert("puppets/figure.toml".into(), MANIFEST.into());
@@ -73,19 +73,19 @@ pub fn files() -> Files {
 }
 
 /// A PNG of RGBA pixels.
-pub fn png(width: u32, height: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
+pub(crate) fn png(width: u32, height: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
     let image = image::RgbaImage::from_fn(width, height, |x, y| image::Rgba(pixel(x, y)));
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
     bytes.into_inner()
 }
 
-pub fn parse(toml: &str, files: &Files) -> Result<Scene, Problems> {
+pub(crate) fn parse(toml: &str, files: &Files) -> Result<Scene, Problems> {
     Scene::parse("scenes/test.toml", toml, files)
 }
 
 /// The codes of channel `c`, row by row.
-pub fn rows(mask: &Mask, c: usize) -> Vec<Vec<u32>> {
+pub(crate) fn rows(mask: &Mask, c: usize) -> Vec<Vec<u32>> {
     let code = |x, y| (mask.transmittance(c, x, y) * f64::from(mask.max_code())).round() as u32;
     (0..mask.height).map(|y| (0..mask.width).map(|x| code(x, y)).collect()).collect()
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Draws discs; counts how often it drew.
 #[derive(Debug, Default)]
-pub struct Placeholder {
+pub(crate) struct Placeholder {
     /// Stimuli drawn so far.
     pub drawn: AtomicUsize,
     /// Whether it draws otherwise than before.
@@ -59,7 +59,7 @@ impl Maker for Placeholder {
 }
 
 /// A grey PNG with a soft dark disc.
-pub fn disc([width, height]: [u32; 2], seed: u32, sway: f64, rough: bool) -> Vec<u8> {
+pub(crate) fn disc([width, height]: [u32; 2], seed: u32, sway: f64, rough: bool) -> Vec<u8> {
     let (w, h) = (f64::from(width), f64::from(height));
     let (cx, cy) = (w * (0.3 + 0.4 * f64::from(seed % 97) / 97.0 + 0.1 * sway), h * 0.5);
     let mut raw = Vec::with_capacity((width as usize + 1) * height as usize);

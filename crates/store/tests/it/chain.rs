@@ -5,19 +5,19 @@ use kelir_store::{ChainReport, Fault, Session, Store, StoredAnswers, sha256_hex}
 use std::path::Path;
 use tempfile::TempDir;
 
-pub const VALUES: &str = "its values are not those that were written";
-pub const MISSING: &str = "rows before it are missing";
-pub const FOLLOWS: &str = "it does not follow the row before";
+pub(crate) const VALUES: &str = "its values are not those that were written";
+pub(crate) const MISSING: &str = "rows before it are missing";
+pub(crate) const FOLLOWS: &str = "it does not follow the row before";
 const PLACE: &str = "it stands in another row's place";
 const ANSWER: &str = "its answer is not the one that came";
 const GONE: &str = "its answer is gone, and not by a withdrawal";
 const NO_ROW: &str = "it is no row of answers";
 
 /// Statements of somebody who tampers, and what is wrong afterwards, by row.
-pub type Case = (&'static [&'static str], &'static [(i64, &'static str)]);
+pub(crate) type Case = (&'static [&'static str], &'static [(i64, &'static str)]);
 
 /// What is wrong, by row.
-pub fn faults(report: &ChainReport, chain: u32) -> Vec<(i64, &str)> {
+pub(crate) fn faults(report: &ChainReport, chain: u32) -> Vec<(i64, &str)> {
     report.faults.iter().filter(|f| f.chain == chain).map(|f| (f.seq, f.what.as_str())).collect()
 }
 

@@ -32,15 +32,15 @@ down = 2
 "#;
 
 /// A minute: longer than any test.
-pub const IDLE: Duration = Duration::from_secs(60);
+pub(crate) const IDLE: Duration = Duration::from_secs(60);
 
 /// Three stills, each shown once.
-pub fn study() -> StudyDefinition {
+pub(crate) fn study() -> StudyDefinition {
     of_blocks("small.toml", &[stills()])
 }
 
 /// Three stills, then a staircase of five trials in two intervals.
-pub fn adaptive() -> StudyDefinition {
+pub(crate) fn adaptive() -> StudyDefinition {
     of_blocks("adaptive.toml", &[stills(), fixtures::block("levels", STAIRCASE)])
 }
 
@@ -53,7 +53,7 @@ fn of_blocks(file: &str, blocks: &[String]) -> StudyDefinition {
 }
 
 /// A picture of one shade, packed fast or well.
-pub fn png(shade: u8, compression: CompressionType) -> Vec<u8> {
+pub(crate) fn png(shade: u8, compression: CompressionType) -> Vec<u8> {
     let mut bytes = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut bytes, compression, FilterType::NoFilter);
     encoder.write_image(&[shade; 256], 16, 16, ExtendedColorType::L8).unwrap();
@@ -61,7 +61,7 @@ pub fn png(shade: u8, compression: CompressionType) -> Vec<u8> {
 }
 
 /// A square picture of one shade.
-pub fn square(shade: u8, side: u32) -> Vec<u8> {
+pub(crate) fn square(shade: u8, side: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
     let pixels = vec![shade; (side * side) as usize];
     PngEncoder::new(&mut bytes).write_image(&pixels, side, side, ExtendedColorType::L8).unwrap();
@@ -70,14 +70,14 @@ pub fn square(shade: u8, side: u32) -> Vec<u8> {
 
 /// A study that is served.
 #[derive(Clone)]
-pub struct Served {
+pub(crate) struct Served {
     pub study: StudyDefinition,
     pub version: String,
     pub stimuli: Vec<StudyStimulus>,
 }
 
 /// Pictures for every item and condition of a study, shades counted from `shade`.
-pub async fn pictures(
+pub(crate) async fn pictures(
     store: &Store,
     study: &StudyDefinition,
     shade: u8,
@@ -95,13 +95,13 @@ pub async fn pictures(
     stimuli
 }
 
-pub async fn serve(store: &Store, study: StudyDefinition, shade: u8) -> Served {
+pub(crate) async fn serve(store: &Store, study: StudyDefinition, shade: u8) -> Served {
     let stimuli = pictures(store, &study, shade, CompressionType::Fast).await;
     let version = store.put_version(&study, &stimuli).await.unwrap();
     Served { study, version, stimuli }
 }
 
-pub async fn open() -> (TempDir, Store, Served) {
+pub(crate) async fn open() -> (TempDir, Store, Served) {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::open(folder.path()).await.unwrap();
     let served = serve(&store, study(), 1).await;
@@ -110,7 +110,7 @@ pub async fn open() -> (TempDir, Store, Served) {
 
 impl Served {
     /// A trial with its pictures.
-    pub fn planned(&self, trial: Trial) -> PlannedTrial {
+    pub(crate) fn planned(&self, trial: Trial) -> PlannedTrial {
         let hashes = |item: &str, condition: &str| {
             let found = self.stimuli.iter().find(|s| s.item == item && s.condition == condition).unwrap();
             StimulusHashes { sha256: found.sha256.clone(), pixels_sha256: found.pixels_sha256.clone() }
@@ -120,14 +120,14 @@ impl Served {
     }
 
     /// The beginning of a slot's plan.
-    pub fn plan(&self, slot: u32) -> PlannedSession {
+    pub(crate) fn plan(&self, slot: u32) -> PlannedSession {
         let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(&self.study, slot);
         let trials = trials.into_iter().map(|trial| self.planned(trial)).collect();
         PlannedSession { seed, next: NextTrials { trials, more } }
     }
 
     /// What follows in a session of `slot`.
-    pub fn next(&self, slot: u32, progress: &Progress) -> NextTrials {
+    pub(crate) fn next(&self, slot: u32, progress: &Progress) -> NextTrials {
         let decided: Vec<Trial> = progress.trials.iter().map(|planned| planned.trial.clone()).collect();
         let chose_target = |index: u32| {
             let trial = &decided[index as usize];
@@ -140,14 +140,14 @@ impl Served {
 }
 
 /// Begins a session; sessions not seen for `idle` give up their slots.
-pub async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
+pub(crate) async fn begin(store: &Store, served: &Served, idle: Duration) -> Session {
     let (new, served) = (newcomer(served, idle), served.clone());
     let plan = move |slot| Ok::<_, StoreError>(served.plan(slot));
     store.create_session(new, plan).await.unwrap().session().unwrap()
 }
 
 /// Somebody who begins.
-pub fn newcomer(served: &Served, idle: Duration) -> NewSession {
+pub(crate) fn newcomer(served: &Served, idle: Duration) -> NewSession {
     NewSession {
         study_id: served.study.id.clone(),
         version: served.version.clone(),
@@ -166,25 +166,30 @@ pub fn newcomer(served: &Served, idle: Duration) -> NewSession {
 }
 
 /// An answer as a page sends it to a kind of trial.
-pub fn answer_of(rules: &dyn TrialRules, trial_index: u32, chose_first: bool, rt_ms: f64) -> NewAnswer {
+pub(crate) fn answer_of(
+    rules: &dyn TrialRules,
+    trial_index: u32,
+    chose_first: bool,
+    rt_ms: f64,
+) -> NewAnswer {
     let sent = rules.simulate(chose_first, rt_ms);
     let Checked { answer, stimulus_size } = rules.check(&sent).unwrap();
     NewAnswer { trial_index, answer, payload: sent.to_string(), stimulus_size }
 }
 
 /// An answer to a still.
-pub fn answer(trial_index: u32, chose_left: bool, rt_ms: f64) -> NewAnswer {
+pub(crate) fn answer(trial_index: u32, chose_left: bool, rt_ms: f64) -> NewAnswer {
     answer_of(kelir_study::trials::rules("two-alternative").unwrap(), trial_index, chose_left, rt_ms)
 }
 
 /// Stores an answer in a session whose plan was decided when it began.
-pub async fn append(store: &Store, session: &Session, new: NewAnswer) -> Appended {
+pub(crate) async fn append(store: &Store, session: &Session, new: NewAnswer) -> Appended {
     let nothing = |_| -> Result<NextTrials, StoreError> { panic!("a whole plan was asked to go on") };
     store.append_answer(session, &new, nothing).await.unwrap()
 }
 
 /// A connection of someone who is not the store and does not care for foreign keys.
-pub async fn stranger(folder: &Path) -> SqliteConnection {
+pub(crate) async fn stranger(folder: &Path) -> SqliteConnection {
     SqliteConnectOptions::new()
         .filename(folder.join("kelir.sqlite"))
         .foreign_keys(false)
@@ -195,7 +200,7 @@ pub async fn stranger(folder: &Path) -> SqliteConnection {
 }
 
 /// Runs statements as someone who may drop triggers and constraints: each must change something.
-pub async fn tamper(folder: &Path, statements: &[&str]) {
+pub(crate) async fn tamper(folder: &Path, statements: &[&str]) {
     let mut stranger = stranger(folder).await;
     let triggers = "SELECT name FROM sqlite_schema WHERE type = 'trigger'";
     let triggers: Vec<String> = sqlx::query_scalar(triggers).fetch_all(&mut stranger).await.unwrap();
@@ -211,7 +216,7 @@ pub async fn tamper(folder: &Path, statements: &[&str]) {
 }
 
 /// Every row of every table but sqlx's own, and every table's layout, as text.
-pub async fn dump(folder: &Path) -> String {
+pub(crate) async fn dump(folder: &Path) -> String {
     let mut stranger = stranger(folder).await;
     let layout =
         "SELECT coalesce(group_concat(type || ' ' || name || ' ' || coalesce(sql, ''), char(10)), '') FROM
@@ -233,13 +238,13 @@ pub async fn dump(folder: &Path) -> String {
 }
 
 /// A copy of a data folder that the program of commit 944eaa2 wrote.
-pub fn fixture(name: &str) -> TempDir {
+pub(crate) fn fixture(name: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     copy(&fixtures().join(name), folder.path());
     folder
 }
 
-pub fn fixtures() -> PathBuf {
+pub(crate) fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/944eaa2")
 }
 
@@ -255,7 +260,7 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// The session of the fixture `answered` that its people left unfinished.
-pub async fn half(store: &Store) -> Session {
+pub(crate) async fn half(store: &Store) -> Session {
     let text = std::fs::read_to_string(fixtures().join("answered.half.json")).unwrap();
     let (id, token): (String, String) = serde_json::from_str(&text).unwrap();
     let session = store.session(&id).await.unwrap().unwrap();

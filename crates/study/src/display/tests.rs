@@ -67,7 +67,7 @@ fn what_is_no_list_of_sizes_is_refused_by_name() {
         ("size = [600, 333]\n[display]\nsizes = [[592, 333]]", "size = [600, 333]: must be the first"),
         ("size = [64, 36]\n[display]\nfit = \"stretch\"", "display.fit = \"stretch\""),
         ("size = [64, 36]\n[display]\nsize = 1", "display.size = 1: is not a known key"),
-        ("size = [64, 36]\ndisplay = 1", "display = 1: must be a table"),
+        ("size = [64, 36]\ndisplay = 1", "display = 1: a table is wanted here, not a number"),
     ] {
         let error = read_with(size, "\"a.png\"").unwrap_err();
         assert!(error.contains(field), "{size}: {error}");

@@ -122,8 +122,8 @@ fn problems_say_where_and_show_values_as_they_are_written() {
         "two.toml:4:8: seed = 0x1_0000_0000_0000_0000: must be an integer from 0 to 2^53",
         "two.toml:6:8: size = [ 9_000, 333 ]: must be [width, height] in pixels, width 16 to 3840, height 16 to 2160; it may be missing where \
          display.sizes is there",
-        "two.toml:35:60: blocks[0].pairs[1].id = 'a': must be unique in the study",
-        "two.toml:33:21: blocks[0].conditions[1] = \"mc2\": must be defined under [conditions]",
+        "two.toml:34:59: blocks[0].pairs[1].id = 'a': must be unique in the study",
+        "two.toml:32:21: blocks[0].conditions[1] = \"mc2\": must be defined under [conditions]",
     ] {
         assert!(told.iter().any(|p| p == expected), "no {expected:?} in {told:#?}");
     }
@@ -288,7 +288,7 @@ fn each_rule_of_levels_refuses_its_breach() {
             "blocks[0].psychometric: a catch block",
         ),
         ("[blocks.psychometric]", "psychometric = 3\n[other]", "blocks[0].psychometric"),
-        ("{ id = \"fig\",", "{ id = \"fig\", level = 1,", "blocks[1].pairs[0].level = 1.0: needs"),
+        ("{ id = \"fig\",", "{ id = \"fig\", level = 1,", "blocks[1].pairs[0].level = 1: needs"),
     ];
     let good = with_levels();
     assert_eq!(problems(&good), Vec::<String>::new());

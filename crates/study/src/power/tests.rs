@@ -246,7 +246,7 @@ fn every_problem_of_a_design_is_named() {
         ("sd = 0.2", "sd = 0.5", "truth[2].sd"),
         ("sd = 0.2", "sd = 0.2\nicc = 0.1", "truth[2].sd: give icc or sd"),
         ("sd = 0.2", "blocks = [\"easy\"]", "truth[2].blocks"),
-        ("sd = 0.2", "blocks = [\"two\"]", "truth[2].blocks = \"two\": an earlier"),
+        ("sd = 0.2", "blocks = [\"two\"]", "truth[2].blocks[0] = \"two\": an earlier"),
         ("sd = 0.2", "blocks = [\"two\"]", "truth: no [[truth]] is of block one"),
         ("photo = 1.5", "photo = nan", "truth[1].jod.photo"),
         (", photo = 1.5", "", "truth: jod gives no quality for condition photo"),

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 worded! {
     /// How an answer was given.
-    pub enum Input {
+    pub(super) enum Input {
         /// A click.
         Mouse = "mouse",
         /// A finger on the screen.

@@ -14,7 +14,7 @@ use crate::{bad_input, progress};
 
 /// What is measured, and how carefully.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Scene file (TOML), or the name of a scene that ships.
     scene: PathBuf,
     /// Pixels, WIDTHxHEIGHT, of the screen's aspect; by default 960 wide.
@@ -52,7 +52,7 @@ pub struct Args {
 }
 
 /// Measures, prints and writes.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let scene = shipped::scene(&args.scene).map_err(bad_input)?;
     let still = scene.still();
     let pixel = match args.pixel {

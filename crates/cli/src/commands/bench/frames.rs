@@ -9,7 +9,7 @@ use crate::commands::drawing::{Drawing, render_error};
 use crate::output::{Figures, table};
 
 /// Prints the frames a second of the four cases and what bounds each, what each skip saves, and on request how all of it scales.
-pub fn run(drawing: &Drawing, count: usize, with_scaling: bool, figures: &Figures) -> Result<()> {
+pub(super) fn run(drawing: &Drawing, count: usize, with_scaling: bool, figures: &Figures) -> Result<()> {
     if count == 0 {
         return Err(bad_input("frames = 0: at least one frame is drawn"));
     }

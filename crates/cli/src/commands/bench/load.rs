@@ -16,7 +16,7 @@ use sides::{ITEMS, Side};
 
 /// Arguments of `kelir bench load`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Answers of a side in a round.
     #[arg(long, default_value_t = 5_000)]
     answers: usize,
@@ -66,7 +66,7 @@ impl Line {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     // One thread asks: what a second one would take is the servers'.
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let figures = runtime.block_on(measure(args))?;

@@ -14,7 +14,7 @@ fn error(value: f64) -> String {
 }
 
 /// The renderer's stress cases.
-pub fn renderer(most: usize, figures: &Figures) -> Result<()> {
+pub(super) fn renderer(most: usize, figures: &Figures) -> Result<()> {
     let cases = numerics::cases(most);
     if cases.is_empty() {
         return Err(bad_input(format!(
@@ -84,7 +84,7 @@ pub fn renderer(most: usize, figures: &Figures) -> Result<()> {
 }
 
 /// Error over knobs.
-pub fn curves(figures: &Figures) -> Result<()> {
+pub(super) fn curves(figures: &Figures) -> Result<()> {
     let curves = numerics::curves().map_err(render_error)?;
     figures.say(
         "Error against the oracle over the knob: rms over penumbra / largest; the default is marked *\n",
@@ -105,7 +105,7 @@ pub fn curves(figures: &Figures) -> Result<()> {
 }
 
 /// The statistics.
-pub fn statistics(figures: &Figures) -> Result<()> {
+pub(super) fn statistics(figures: &Figures) -> Result<()> {
     figures.say("Distributions against mpmath: the worst relative error of each function\n")?;
     let worst = kelir_stats::numerics::worst_errors()?;
     let rows: Vec<Vec<String>> = worst

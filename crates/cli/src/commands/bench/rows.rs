@@ -29,7 +29,7 @@ use crate::{bad_input, progress};
 
 /// Arguments of `kelir bench rows`.
 #[derive(clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Answers; rounded up to whole participants of thirty.
     #[arg(long, default_value_t = 1_000_000)]
     rows: u64,
@@ -67,7 +67,7 @@ struct Report {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
+pub(super) fn run(args: &Args) -> Result<()> {
     let trials = (CONDITIONS * (CONDITIONS - 1) / 2 * ITEMS_A_BLOCK) as u64;
     if !(1..=100_000_000).contains(&args.rows) {
         return Err(bad_input(format!("rows = {}: must lie between 1 and 100,000,000", args.rows)));

@@ -22,7 +22,7 @@ const UNDRAWN: &[&str] = &[
 ];
 
 /// Only what can be drawn, no images, scripts, text (no fonts are loaded) or references to the outside.
-pub fn check_elements(document: &Document, refuse: &mut dyn FnMut(String)) {
+pub(super) fn check_elements(document: &Document, refuse: &mut dyn FnMut(String)) {
     let root = document.root_element();
     if root.tag_name().name() != "svg" || root.tag_name().namespace() != Some(SVG) {
         return refuse("is not an SVG: its root is no <svg> of the SVG namespace".to_owned());
@@ -76,7 +76,11 @@ pub fn check_elements(document: &Document, refuse: &mut dyn FnMut(String)) {
 }
 
 /// The groups of the named parts in document order; everything that is drawn must be in one of them.
-pub fn find_parts(document: &Document, parts: &[String], refuse: &mut dyn FnMut(String)) -> Vec<NodeId> {
+pub(super) fn find_parts(
+    document: &Document,
+    parts: &[String],
+    refuse: &mut dyn FnMut(String),
+) -> Vec<NodeId> {
     if parts.is_empty() {
         return Vec::new();
     }
@@ -109,7 +113,7 @@ pub fn find_parts(document: &Document, parts: &[String], refuse: &mut dyn FnMut(
 }
 
 /// References must resolve, not go in circles, not reach into another part, and not multiply beyond the limit.
-pub fn check_references(document: &Document, parts: &[NodeId], refuse: &mut dyn FnMut(String)) {
+pub(super) fn check_references(document: &Document, parts: &[NodeId], refuse: &mut dyn FnMut(String)) {
     let by_id: HashMap<&str, Node> =
         document.descendants().filter_map(|n| n.attribute("id").map(|id| (id, n))).collect();
     let mut walk = Walk { by_id, counts: HashMap::new(), refused: HashSet::new(), parts };

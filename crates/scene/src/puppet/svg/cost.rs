@@ -20,7 +20,7 @@ pub(super) struct Cost {
 
 impl Cost {
     /// One after the other.
-    pub fn and(self, other: Cost) -> Cost {
+    pub(super) fn and(self, other: Cost) -> Cost {
         Cost {
             filled: self.filled + other.filled,
             layered: self.layered.max(other.layered),
@@ -29,7 +29,7 @@ impl Cost {
     }
 
     /// The rule that is broken, if one is.
-    pub fn check(&self) -> Result<(), String> {
+    pub(super) fn check(&self) -> Result<(), String> {
         let Cost { filled, layered, dashes } = *self;
         // A NaN, from bounds that overflowed, is over every limit.
         let over = |cost: f64, most: f64| cost.partial_cmp(&most).is_none_or(std::cmp::Ordering::is_gt);

@@ -25,7 +25,7 @@ pub(crate) struct Svg {
 impl Svg {
     /// Checks an SVG and splits it into the groups named `parts` (all of it is one part when there are none).
     /// Every problem is handed to `refuse`.
-    pub fn open(bytes: &[u8], parts: &[String], refuse: &mut dyn FnMut(String)) -> Option<Self> {
+    pub(crate) fn open(bytes: &[u8], parts: &[String], refuse: &mut dyn FnMut(String)) -> Option<Self> {
         if bytes.len() > limits::SVG_BYTES {
             refuse(format!("has {} bytes; an SVG has at most {}", bytes.len(), limits::SVG_BYTES));
             return None;
@@ -95,7 +95,7 @@ impl Svg {
     }
 
     /// Whether it can be drawn on `rows` rows with bearable time and memory; the rule that it breaks otherwise.
-    pub fn check_cost(&self, rows: usize) -> Result<(), String> {
+    pub(crate) fn check_cost(&self, rows: usize) -> Result<(), String> {
         let mut sum = cost::Cost::default();
         for tree in &self.trees {
             sum = sum.and(cost::of_tree(tree, rows));
@@ -104,7 +104,7 @@ impl Svg {
     }
 
     /// Opacities α(1 − T) of part `part` on the lattice.
-    pub fn texture(&self, part: usize, lattice: &Lattice, translucent: bool) -> Texture {
+    pub(crate) fn texture(&self, part: usize, lattice: &Lattice, translucent: bool) -> Texture {
         let tree = &self.trees[part];
         let scale = lattice.rows as f32 / tree.size().height();
         let transform = Transform::from_row(scale, 0.0, 0.0, scale, lattice.margin as f32, 0.0);

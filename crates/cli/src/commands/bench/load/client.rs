@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use tokio::net::TcpStream;
 
 /// The text of a request with a JSON body.
-pub fn request(method: &str, path: &str, token: &str, body: &str) -> String {
+pub(super) fn request(method: &str, path: &str, token: &str, body: &str) -> String {
     format!(
         "{method} {path} HTTP/1.1\r\nHost: kelir\r\nAuthorization: Bearer {token}\r\nContent-Type: application/json\r\nContent-Length: {}\r\n\r\n{body}",
         body.len()
@@ -17,20 +17,20 @@ pub fn request(method: &str, path: &str, token: &str, body: &str) -> String {
 }
 
 /// A connection, with what it has read ahead.
-pub struct Connection {
+pub(super) struct Connection {
     stream: TcpStream,
     read: Vec<u8>,
 }
 
 impl Connection {
-    pub async fn open(address: SocketAddr) -> Result<Connection> {
+    pub(super) async fn open(address: SocketAddr) -> Result<Connection> {
         let stream = TcpStream::connect(address).await.context("the server does not answer")?;
         stream.set_nodelay(true)?;
         Ok(Connection { stream, read: Vec::new() })
     }
 
     /// Sends a request and reads the body of its answer, which must be a success.
-    pub async fn send(&mut self, request: &str) -> Result<Vec<u8>> {
+    pub(super) async fn send(&mut self, request: &str) -> Result<Vec<u8>> {
         let mut rest = request.as_bytes();
         while !rest.is_empty() {
             self.stream.writable().await?;
@@ -71,7 +71,7 @@ fn head(read: &[u8]) -> Result<Option<(usize, usize)>> {
 }
 
 /// Times that answers took, in ms, and how many came a second.
-pub struct Times {
+pub(super) struct Times {
     sorted_ms: Vec<f64>,
     pub per_s: f64,
 }
@@ -83,14 +83,14 @@ impl Times {
     }
 
     /// The smallest time that a part `q` of all did not exceed.
-    pub fn quantile_ms(&self, q: f64) -> f64 {
+    pub(super) fn quantile_ms(&self, q: f64) -> f64 {
         let last = self.sorted_ms.len().saturating_sub(1);
         self.sorted_ms.get((last as f64 * q).ceil() as usize).copied().unwrap_or(f64::NAN)
     }
 }
 
 /// Sends every request over so many connections, each as soon as the one before it on its connection is answered.
-pub async fn saturate(
+pub(super) async fn saturate(
     address: SocketAddr,
     connections: usize,
     requests: Vec<String>,
@@ -123,7 +123,7 @@ pub async fn saturate(
 }
 
 /// One connection a person; each sends a request every `every`, from the moment that it should have gone.
-pub async fn pace(address: SocketAddr, people: Vec<Vec<String>>, every: Duration) -> Result<Times> {
+pub(super) async fn pace(address: SocketAddr, people: Vec<Vec<String>>, every: Duration) -> Result<Times> {
     let n = people.len() as f64;
     let mut senders = Vec::new();
     let mut connections = Vec::new();

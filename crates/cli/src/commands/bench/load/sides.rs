@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use super::client::{Connection, request};
 
 /// Items of the study, and so answers of a session.
-pub const ITEMS: usize = 5;
+pub(super) const ITEMS: usize = 5;
 
 /// Behind the small study, in the order in which their pictures are made.
 const SLOW_FILE: &str = "studies/slow.toml";
@@ -67,7 +67,7 @@ const RIVAL: &str = include_str!("../../../../../../tests/rivals/express/server.
 const RIVAL_PACKAGE: &str = include_str!("../../../../../../tests/rivals/express/package.json");
 
 /// A server that runs until this is dropped.
-pub struct Side {
+pub(super) struct Side {
     pub name: &'static str,
     pub address: SocketAddr,
     process: Child,
@@ -89,12 +89,12 @@ fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
 }
 
 /// kelir itself, with a small study in place of the built-in one.
-pub fn kelir() -> Result<Side> {
+pub(super) fn kelir() -> Result<Side> {
     served("kelir", tempfile::tempdir()?, "The stimuli are ready.")
 }
 
 /// The same while it draws the pictures of another study, which it does for longer than anybody measures.
-pub async fn kelir_drawing() -> Result<Side> {
+pub(super) async fn kelir_drawing() -> Result<Side> {
     let folder = tempfile::tempdir()?;
     // Its first picture takes hours.
     write(folder.path(), SLOW_FILE, &study(1, [1920, 1080], ", spp = 1048576"))?;
@@ -111,7 +111,7 @@ pub async fn kelir_drawing() -> Result<Side> {
 
 impl Side {
     /// Whether the slow study's pictures are still being drawn.
-    pub async fn draws(&self) -> Result<bool> {
+    pub(super) async fn draws(&self) -> Result<bool> {
         let start = request("POST", "/api/v1/studies/slow/sessions", "", "{}");
         let refused = Connection::open(self.address).await?.send(&start).await.err();
         Ok(refused.is_some_and(|error| error.to_string().contains("503")))
@@ -129,7 +129,7 @@ fn served(name: &'static str, folder: TempDir, ready: &str) -> Result<Side> {
 }
 
 /// Express and better-sqlite3, installed into a temporary folder.
-pub fn express() -> Result<Side> {
+pub(super) fn express() -> Result<Side> {
     let folder = tempfile::tempdir()?;
     write(folder.path(), "server.mjs", RIVAL)?;
     write(folder.path(), "package.json", RIVAL_PACKAGE)?;

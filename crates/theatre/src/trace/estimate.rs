@@ -1,0 +1,335 @@
+//! From replicates' sums to radiance and its standard error, row by row.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use kelir_frame::{Meter, RenderError};
+use kelir_scene::{Ambient, Theatre};
+use rayon::prelude::*;
+
+use super::bounds::Padded;
+use super::native::Sampler;
+use super::plan::Plan;
+use super::sobol::{Points, REPLICATES};
+use crate::albedo::PixelAlbedo;
+use crate::ambient;
+
+/// Everything that a row needs.
+pub(super) struct Estimator<'a> {
+    pub theatre: &'a Theatre,
+    pub plan: &'a Plan,
+    pub masks: &'a [Arc<Padded>],
+    /// E⁰ at unit radiance, one image an emitter.
+    pub lit: &'a [&'a [f64]],
+    /// Its means over pixels, where samples spread over them.
+    pub means: &'a [&'a [f64]],
+    /// Radiance of each source: the emitters, then the dome where there is one.
+    pub radiance: Vec<[f64; 3]>,
+    pub albedo: &'a PixelAlbedo,
+    pub points: &'a Points,
+    pub skip: bool,
+    pub layers: bool,
+    /// Told of each row that is done.
+    pub meter: &'a Meter,
+}
+
+/// One estimate to sample: the light of one emitter through planes `first..end` at one pixel, and the product of codes
+/// that it deviates from.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct Job {
+    pub x: u32,
+    pub y: u32,
+    pub emitter: u32,
+    pub first: u32,
+    pub end: u32,
+    pub v0_r: f32,
+    pub v0_g: f32,
+    pub v0_b: f32,
+}
+
+/// Where sums of (V − V₀) · weight come from, channel by channel (grey scenes: the first alone counts).
+type Source<'a> = &'a mut dyn FnMut(&Job) -> [[f64; REPLICATES]; 3];
+
+/// One finished row.
+#[derive(Default)]
+pub(crate) struct Row {
+    /// Planes of `width` values: radiance R, G, B; and with layers SE R, G, B, then visibilities.
+    pub values: Vec<f32>,
+    /// (Pixel, emitter, planes) estimates that were sampled.
+    pub jobs: u64,
+    /// Pixels where anything varies.
+    pub penumbra: u64,
+    /// Largest unshadowed radiance.
+    pub brightest: f64,
+    /// Sum, sum of squares and maximum over penumbra pixels of the standard error's largest channel.
+    pub error_sum: f64,
+    pub error_square: f64,
+    pub error_max: f64,
+}
+
+/// The estimate of one emitter's visibility through some planes: V₀ and the replicates' deviations from it, both in E / L.
+#[derive(Clone, Copy)]
+struct Estimate {
+    base: [f64; 3],
+    /// `None` where the bounds say that all deviations are zero.
+    deviation: Option<[[f64; REPLICATES]; 3]>,
+}
+
+/// Sums over sources of L · E in one channel, through one set of planes: of the replicates, and of their means.
+#[derive(Clone, Copy, Default)]
+struct Light {
+    replicates: [f64; REPLICATES],
+    mean: f64,
+}
+
+impl Estimate {
+    /// Mean of the replicates.
+    fn mean(&self, c: usize) -> f64 {
+        self.base[c] + self.deviation.as_ref().map_or(0.0, |d| d[c].iter().sum::<f64>() / REPLICATES as f64)
+    }
+
+    /// Adds `radiance` times this to `light`.
+    fn add_to(&self, light: &mut Light, c: usize, radiance: f64) {
+        light.mean += radiance * self.mean(c);
+        match &self.deviation {
+            None => light.replicates.iter_mut().for_each(|l| *l += radiance * self.base[c]),
+            Some(d) => light
+                .replicates
+                .iter_mut()
+                .zip(&d[c])
+                .for_each(|(l, deviation)| *l += radiance * (self.base[c] + deviation)),
+        }
+    }
+}
+
+impl Estimator<'_> {
+    /// The given rows, on all cores; the result does not depend on how many there are.
+    pub(super) fn rows(&self, rows: &[usize]) -> Vec<Row> {
+        let row = |j: &usize| {
+            let row = self.row(*j, &mut |job| self.native(job));
+            self.meter.add(1);
+            row
+        };
+        rows.par_iter().map(row).collect()
+    }
+
+    /// The given rows with sums from `draw`, which is handed the jobs of many rows at a time: `channels * REPLICATES`
+    /// sums each.
+    pub(super) fn rows_by(
+        &self,
+        rows: &[usize],
+        mut draw: impl FnMut(&[Job]) -> Result<Vec<f32>, RenderError>,
+    ) -> Result<Vec<Row>, RenderError> {
+        /// Jobs are gathered until there may be this many.
+        const ENOUGH: usize = 1 << 19;
+        let band = (ENOUGH / (self.plan.size[0] * self.plan.emitters.len()).max(1)).max(1);
+        let per_job = self.plan.channels * REPLICATES;
+        let mut done = Vec::with_capacity(rows.len());
+        for rows in rows.chunks(band) {
+            let gather = |j: &usize| {
+                let mut jobs = Vec::new();
+                self.row(*j, &mut |job| {
+                    jobs.push(*job);
+                    [[0.0; REPLICATES]; 3]
+                });
+                jobs
+            };
+            let wanted: Vec<Vec<Job>> = rows.par_iter().map(gather).collect();
+            let sums = draw(&wanted.concat())?;
+            let starts = wanted.iter().scan(0, |end, jobs| {
+                let start = *end;
+                *end += jobs.len() * per_job;
+                Some(start)
+            });
+            let starts: Vec<usize> = starts.collect();
+            done.par_extend(rows.par_iter().zip(starts).map(|(j, start)| {
+                let mut sums = sums[start..].chunks_exact(per_job);
+                self.row(*j, &mut |_| {
+                    let sums = sums.next().expect("as many sums as jobs");
+                    std::array::from_fn(|c| {
+                        let c = c.min(self.plan.channels - 1) * REPLICATES;
+                        std::array::from_fn(|r| f64::from(sums[c + r]))
+                    })
+                })
+            }));
+            self.meter.add(rows.len());
+        }
+        Ok(done)
+    }
+
+    fn native(&self, job: &Job) -> [[f64; REPLICATES]; 3] {
+        let sampler = Sampler {
+            plan: self.plan,
+            masks: self.masks,
+            points: self.points,
+            planes: job.first as usize..job.end as usize,
+        };
+        let (k, i, j) = (job.emitter as usize, job.x as usize, job.y as usize);
+        match self.plan.channels {
+            1 => [sampler.sums::<1>(k, i, j, [job.v0_r])[0]; 3],
+            _ => sampler.sums::<3>(k, i, j, [job.v0_r, job.v0_g, job.v0_b]),
+        }
+    }
+
+    fn row(&self, j: usize, source: Source) -> Row {
+        let width = self.plan.size[0];
+        let emitters = self.plan.emitters.len();
+        let extra = if self.layers { 3 + emitters * self.plan.channels } else { 0 };
+        let mut row = Row { values: vec![0.0; width * (3 + extra)], ..Row::default() };
+        // With several planes the paper's ambient light needs each plane's own visibility too.
+        let alone = matches!(self.theatre.ambient, Ambient::Paper { .. }) && self.masks.len() > 1;
+        let subsets = 1 + if alone { self.masks.len() } else { 0 };
+        let (mut estimates, mut lights) =
+            (Vec::with_capacity(emitters * subsets), Vec::with_capacity(subsets));
+        for i in 0..width {
+            estimates.clear();
+            let mut penumbra = false;
+            for subset in 0..subsets {
+                let planes = if subset == 0 { 0..self.masks.len() } else { subset - 1..subset };
+                for k in 0..emitters {
+                    let (estimate, varies) = self.estimate(k, [i, j], planes.clone(), source);
+                    row.jobs += u64::from(estimate.deviation.is_some());
+                    estimates.push(estimate);
+                    penumbra |= varies;
+                }
+            }
+            self.finish([i, j], &estimates, penumbra, &mut lights, &mut row);
+        }
+        row
+    }
+
+    /// The estimate and whether the bounds leave room for a penumbra.
+    fn estimate(
+        &self,
+        k: usize,
+        [i, j]: [usize; 2],
+        planes: std::ops::Range<usize>,
+        source: Source,
+    ) -> (Estimate, bool) {
+        // What doesn't shine makes no penumbra, and its visibility is of no use but as a layer.
+        let dark = self.radiance[k] == [0.0; 3];
+        if dark && self.skip && !self.layers {
+            return (Estimate { base: [0.0; 3], deviation: None }, false);
+        }
+        let known = self.known(k, i, j, planes.clone());
+        let [v0_r, v0_g, v0_b] = known.unwrap_or([0.0; 3]);
+        let full: f64 = self.masks[planes.clone()].iter().map(|m| f64::from(m.max_code)).product();
+        let lit = self.lit(k, j * self.plan.size[0] + i);
+        let base = [v0_r, v0_g, v0_b].map(|v| lit * (f64::from(v) / full));
+        if known.is_some() && self.skip {
+            return (Estimate { base, deviation: None }, false);
+        }
+        let (x, y, first, end) = (i as u32, j as u32, planes.start as u32, planes.end as u32);
+        let sums = source(&Job { x, y, emitter: k as u32, first, end, v0_r, v0_g, v0_b });
+        let over_mean = self.means.get(k).map_or(1.0, |means| lit / means[j * self.plan.size[0] + i]);
+        let unit = if self.plan.geometric { lit } else { self.plan.emitters[k].scale * over_mean };
+        let scale = unit / (self.points.samples as f64 * full);
+        (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none() && !dark)
+    }
+
+    /// The product of codes where the bounds say that it is one value: all planes constant, or one of them opaque.
+    fn known(&self, k: usize, i: usize, j: usize, planes: std::ops::Range<usize>) -> Option<[f32; 3]> {
+        let mut product = Some([1f32; 3]);
+        for (map, mask) in self.plan.emitters[k].planes[planes.clone()].iter().zip(&self.masks[planes]) {
+            let (x, y) = map.range(i, j);
+            if !mask.is_constant(x, y) {
+                product = None;
+                continue;
+            }
+            let codes = [0, 1, 2].map(|c| f32::from(mask.code(c, x.first, y.first)));
+            if codes == [0.0; 3] {
+                return Some(codes);
+            }
+            product = product.map(|p| [0, 1, 2].map(|c| p[c] * codes[c]));
+        }
+        product
+    }
+
+    /// Radiance, standard error and layers of one pixel into `row`.
+    fn finish(
+        &self,
+        [i, j]: [usize; 2],
+        estimates: &[Estimate],
+        penumbra: bool,
+        lights: &mut Vec<Light>,
+        row: &mut Row,
+    ) {
+        let width = self.plan.size[0];
+        let pixel = j * width + i;
+        let sources = &self.radiance;
+        let sampled = estimates.iter().any(|e| e.deviation.is_some());
+        let mut error = 0f64;
+        for c in 0..3 {
+            let reflect = f64::from(self.albedo.at(c, pixel)) / std::f64::consts::PI;
+            let lit: f64 = sources.iter().enumerate().map(|(k, l)| l[c] * self.lit(k, pixel)).sum();
+            lights.clear();
+            lights.extend(estimates.chunks_exact(sources.len()).map(|estimates| {
+                let mut light = Light::default();
+                estimates.iter().zip(sources).for_each(|(e, l)| e.add_to(&mut light, c, l[c]));
+                light
+            }));
+            let radiance = reflect * self.irradiance(c, lit, |subset| lights[subset].mean);
+            row.values[c * width + i] = radiance as f32;
+            row.brightest = row.brightest.max(reflect * lit);
+            if sampled {
+                let mut replicates = [0.0; REPLICATES];
+                for (r, replicate) in replicates.iter_mut().enumerate() {
+                    *replicate = self.irradiance(c, lit, |subset| lights[subset].replicates[r]);
+                }
+                let se = reflect * standard_error(&replicates);
+                error = error.max(se);
+                if self.layers {
+                    row.values[(3 + c) * width + i] = se as f32;
+                }
+            }
+        }
+        if penumbra {
+            row.penumbra += 1;
+            row.error_sum += error;
+            row.error_square += error * error;
+            row.error_max = row.error_max.max(error);
+        }
+        if self.layers {
+            let channels = self.plan.channels;
+            for (k, estimate) in estimates[..sources.len()].iter().enumerate() {
+                for c in 0..channels {
+                    let visibility = estimate.mean(c) / self.lit(k, pixel);
+                    row.values[(6 + k * channels + c) * width + i] = visibility as f32;
+                }
+            }
+        }
+    }
+
+    /// E⁰ of source `k` at unit radiance; a whole dome's is π.
+    fn lit(&self, k: usize, pixel: usize) -> f64 {
+        self.lit.get(k).map_or(std::f64::consts::PI, |image| image[pixel])
+    }
+
+    /// The screen's irradiance in channel `c` with the ambient light: `lamp(0)` is Σ L_k E_k through all planes,
+    /// `lamp(1 + i)` through plane i alone, `lit` without planes.
+    fn irradiance(&self, c: usize, lit: f64, lamp: impl Fn(usize) -> f64) -> f64 {
+        let direct = lamp(0);
+        match self.theatre.ambient {
+            Ambient::Paper { k_d_m, s } if lit > 0.0 => {
+                let planes = self.theatre.planes.iter().enumerate();
+                let several = self.theatre.planes.len() > 1;
+                let distance = ambient::distance_m(planes.map(|(i, plane)| {
+                    let visibility = if several { lamp(1 + i) / lit } else { 0.0 };
+                    (plane.centre_m.z.abs(), visibility)
+                }));
+                direct + lit * ambient::share(direct / lit, distance, k_d_m, s[c])
+            }
+            _ => direct,
+        }
+    }
+}
+
+/// Standard error of the mean of independent replicates; exactly 0 where all are equal.
+fn standard_error(replicates: &[f64; REPLICATES]) -> f64 {
+    let n = REPLICATES as f64;
+    let shifted = replicates.map(|v| v - replicates[0]);
+    let mean = shifted.iter().sum::<f64>() / n;
+    let square: f64 = shifted.iter().map(|v| (v - mean) * (v - mean)).sum();
+    (square / (n * (n - 1.0))).sqrt()
+}

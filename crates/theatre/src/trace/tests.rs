@@ -1,0 +1,189 @@
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
+use glam::DVec3;
+use kelir_scene::*;
+
+use super::*;
+use crate::irradiance;
+
+/// A half-plane: opaque for x < 0.
+pub(crate) fn edge(channels: usize) -> Mask {
+    let (w, h) = (64, 36);
+    let code = |k: usize| if k % w < w / 2 { 0 } else { 255 };
+    Mask::new(w, h, channels, Texels::U8((0..w * h * channels).map(code).collect()))
+}
+
+/// Two emitters before one plane.
+pub(crate) fn theatre(mask: Mask, ambient: Ambient) -> Theatre {
+    let emitter = |name: &str, side: f64, radiance: f64| Emitter {
+        name: name.into(),
+        shape: EmitterShape::Rectangle { size_m: [side, side] },
+        radiance: [radiance, 0.8 * radiance, 0.5 * radiance],
+    };
+    Theatre {
+        screen: Screen { width_m: 1.6, height_m: 0.9, albedo: Albedo::Uniform([0.8, 0.7, 0.6]) },
+        lamp: Lamp {
+            position_m: DVec3::new(0.05, -0.02, -1.5),
+            emitters: vec![emitter("inner", 0.02, 2000.0), emitter("outer", 0.1, 40.0)],
+        },
+        ambient,
+        planes: vec![Plane {
+            mask: Arc::new(mask),
+            centre_m: DVec3::new(0.0, 0.0, -0.4),
+            size_m: [1.2, 0.675],
+            tilt_deg: [0.0; 2],
+        }],
+        exposure: Exposure::Auto,
+    }
+}
+
+/// A small view.
+pub(crate) fn view(pixel: Pixel) -> View {
+    View { size: [48, 27], pixel, skip: true }
+}
+
+impl Tracer {
+    /// On the GPU with this text for a shader.
+    pub(crate) fn with_shader(wgsl: &str) -> Self {
+        let gpu = kelir_frame::gpu::choose(Backend::Gpu).expect("the tests need a Vulkan adapter").unwrap();
+        let sampler = gpu::Sampler::new(gpu, wgsl).unwrap();
+        Self { gpu: Some(sampler), ..Self::new(Backend::Cpu).unwrap() }
+    }
+}
+
+/// The narrow and wide instruction sets give the same sums.
+#[test]
+fn vector_width_does_not_matter() {
+    let theatre = theatre(edge(3), Ambient::None);
+    let view = view(Pixel::Area);
+    let masks = [Arc::new(Padded::new(&theatre.planes[0].mask))];
+    let plan = plan::Plan::new(&theatre, &view, &masks, false).unwrap();
+    let points = Points::new(1, 37);
+    let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..1 };
+    for i in 20..28 {
+        assert_eq!(sampler.sums::<3>(1, i, 13, [0.0; 3]), sampler.sums_any::<3>(1, i, 13, [0.0; 3]));
+    }
+}
+
+#[test]
+fn structs_are_laid_out_as_the_shader_expects() {
+    use crate::shaders::same_layout;
+    same_layout!(
+        gpu::WGSL,
+        "Params",
+        gpu::Params { width, height, samples, jobs, planes, seed, area, channels, scrambled }
+    );
+    same_layout!(gpu::WGSL, "Job", estimate::Job { x, y, emitter, first, end, v0_r, v0_g, v0_b });
+    same_layout!(gpu::WGSL, "Axis", gpu::GpuAxis { offset, low, high, anchor });
+    same_layout!(gpu::WGSL, "Emitter", gpu::Emitter { side_x, side_y, pixel_x, pixel_y, shape });
+    same_layout!(
+        gpu::WGSL,
+        "Map",
+        gpu::Map {
+            emitter_x,
+            emitter_y,
+            pixel_x,
+            pixel_y,
+            layer,
+            channels,
+            tilted,
+            behind,
+            right_x,
+            right_y,
+            down_x,
+            down_y,
+            normal_x,
+            normal_y,
+        }
+    );
+    same_layout!(gpu::WGSL, "Seen", gpu::GpuSeen { x, y, ratio, rest, depth, along_x, along_y });
+}
+
+/// Two-sided tail of Student's t with 15 degrees of freedom, by the finite sum that odd degrees have.
+fn tail(t: f64) -> f64 {
+    let theta = (t.abs() / 15f64.sqrt()).atan();
+    let (sin, cos) = theta.sin_cos();
+    let (mut term, mut sum) = (1.0, 1.0);
+    for k in 1..=6 {
+        term *= f64::from(2 * k) / f64::from(2 * k + 1) * cos * cos;
+        sum += term;
+    }
+    1.0 - 2.0 / std::f64::consts::PI * (theta + sin * cos * sum)
+}
+
+/// The smallest p over tiles of penumbra pixels, corrected for their number (Šidák): replicates of MC drawn from
+/// `drawn` against the oracle's irradiance of `truth`, whose first emitter gives the same flux.
+fn agreement(truth: &Theatre, drawn: &Theatre, view: &View) -> f64 {
+    let masks = [Arc::new(Padded::new(&drawn.planes[0].mask))];
+    let plan = plan::Plan::new(drawn, view, &masks, false).unwrap();
+    let points = Points::new(11, 256);
+    let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..1 };
+    let (before, after) = (&truth.lamp.emitters[0].shape, &drawn.lamp.emitters[0].shape);
+    let scale = plan.emitters[0].scale / (256.0 * 255.0) * before.area_m2() / after.area_m2();
+    // What a light meter reads: the mean of E over the pixel, over E⁰ at its centre. The edge is vertical, so E has its
+    // kinks along x, where the midpoints are dense.
+    let steps = if view.pixel == Pixel::Area { [512, 2] } else { [1, 1] };
+    let exact = |i: usize, j: usize| {
+        let place = |k: usize, d: usize| (k as f64 + 0.5) / f64::from(steps[d]) - 0.5;
+        let lit = |p| irradiance::unit(before, truth.lamp.position_m, p);
+        let middle = crate::project::pixel_m(&truth.screen, view.size, i as f64, j as f64);
+        let mut sum = 0.0;
+        for k in 0..(steps[0] * steps[1]) as usize {
+            let (x, y) = (k % steps[0] as usize, k / steps[0] as usize);
+            let (x, y) = (i as f64 + place(x, 0), j as f64 + place(y, 1));
+            let p = crate::project::pixel_m(&truth.screen, view.size, x, y);
+            let seen = crate::oracle::visibility(truth, 0, crate::oracle::Point::At(p), 1.0).irradiance[0];
+            sum += seen * lit(p);
+        }
+        sum / f64::from(steps[0] * steps[1]) / lit(middle)
+    };
+    let (mut smallest, mut tiles) = (1f64, 0);
+    for i in 0..view.size[0] {
+        if !(0.02..0.98).contains(&exact(i, 0)) {
+            continue;
+        }
+        for rows in (0..view.size[1]).collect::<Vec<_>>().chunks(9) {
+            let (mut mean, mut known) = ([0f64; REPLICATES], 0.0);
+            for &j in rows {
+                let p = crate::project::pixel_m(&truth.screen, view.size, i as f64, j as f64);
+                let lit = irradiance::unit(before, truth.lamp.position_m, p);
+                let sums = sampler.sums::<1>(0, i, j, [0.0])[0];
+                mean.iter_mut().zip(sums).for_each(|(m, s)| *m += s * scale / lit);
+                known += exact(i, j);
+            }
+            let n = REPLICATES as f64;
+            let average = mean.iter().sum::<f64>() / n;
+            let variance = mean.iter().map(|m| (m - average).powi(2)).sum::<f64>() / (n - 1.0);
+            smallest = smallest.min(tail((average - known) / (variance / n).sqrt()));
+            tiles += 1;
+        }
+    }
+    assert!(tiles >= 12, "{tiles} tiles of penumbra");
+    1.0 - (1.0 - smallest).powi(tiles)
+}
+
+/// The statistical test of the ground truth: t with 15 degrees of freedom on tile means, α = 0.01 over all tiles; a lamp
+/// that is 1 % larger at equal flux fails it.
+#[test]
+fn no_difference_from_the_oracle_but_a_lamp_one_percent_larger() {
+    assert!((tail(2.131_449_5) - 0.05).abs() < 1e-7 && (tail(4.072_765_2) - 0.001).abs() < 1e-8);
+    let mut scene = theatre(edge(1), Ambient::None);
+    scene.lamp.emitters.remove(0);
+    let mut larger = scene.clone();
+    larger.lamp.emitters[0].shape = EmitterShape::Rectangle { size_m: [0.101, 0.101] };
+    for pixel in [Pixel::Centre, Pixel::Area] {
+        let view = View { size: [96, 54], ..view(pixel) };
+        let p = agreement(&scene, &scene, &view);
+        assert!(p > 0.01, "{pixel:?}: p = {p}");
+        let control = agreement(&scene, &larger, &view);
+        assert!(control < 0.01, "{pixel:?}: p = {control}");
+    }
+}
+
+/// What stands in WGSL and in Rust is the same.
+#[test]
+fn constants_are_those_of_the_shader() {
+    use crate::shaders::same_constants;
+    same_constants!(gpu::WGSL, {
+        "FLUSH": native::FLUSH, "REPLICATES": REPLICATES, "workgroup_size": gpu::WORKGROUP,
+    });
+}
