@@ -1,6 +1,5 @@
 //! A report as sections of paragraphs, tables and figures: what is said, whoever writes it down.
 
-use crate::{StudyReport, sections};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -100,20 +99,6 @@ pub struct Figure {
 }
 
 impl Document {
-    /// What is to be said of a study.
-    pub fn of(report: &StudyReport) -> Document {
-        Document {
-            title: report.title.clone(),
-            subtitle: format!(
-                "Report of the study {}, version {}, by kelir {}",
-                report.study,
-                short(&report.version),
-                report.kelir_version
-            ),
-            sections: sections::all(report),
-        }
-    }
-
     /// Every figure, in order.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
         self.sections.iter().flat_map(|s| &s.pieces).filter_map(|piece| match piece {

@@ -1,7 +1,7 @@
 //! The sections of a report, in order.
 
 use crate::blocks::{self, table};
-use crate::document::{Cell, Piece, Row, Section, Table};
+use crate::document::{Cell, Document, Piece, Row, Section, Table, short};
 use crate::format::{count, fixed, p_value, percent, share, significant};
 use crate::numbers::{Sample, of_scale};
 use crate::{StudyReport, display, figures, headline, paper, sources};
@@ -12,6 +12,22 @@ use std::collections::BTreeSet;
 
 /// Excluded participants that are named one by one.
 const MOST_LISTED: usize = 100;
+
+impl Document {
+    /// What is to be said of a study.
+    pub fn of(report: &StudyReport) -> Document {
+        Document {
+            title: report.title.clone(),
+            subtitle: format!(
+                "Report of the study {}, version {}, by kelir {}",
+                report.study,
+                short(&report.version),
+                report.kelir_version
+            ),
+            sections: all(report),
+        }
+    }
+}
 
 /// Everything there is to say.
 pub(crate) fn all(report: &StudyReport) -> Vec<Section> {

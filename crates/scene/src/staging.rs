@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use crate::limits::{GRID_SIDE, SCENE_TEXELS};
+use crate::puppet::figure::Posed;
 use crate::puppet::figure::{Figure, Pose};
 use crate::puppet::grid::Rect;
 use crate::puppet::manifest::Part;
-use crate::puppet::masks::Posed;
 use crate::theatre::{Mask, Plane};
 use crate::timeline::{Target, Timeline};
 use std::sync::Arc;

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::compose::{Code, Placed, Plate, compose, multiply};
 use super::grid::{Lattice, Rect, Rigid, Texture};
 use super::manifest::Part;
-use super::masks::Posed;
 use crate::theatre::{Mask, Texels};
 
 /// How a puppet is posed: its parts about their pivots, then the whole about its centre. Degrees, counter-clockwise as the audience sees it.
@@ -65,6 +64,14 @@ impl Still {
 struct Joint {
     parent: Option<usize>,
     pivot: [f64; 2],
+}
+
+/// A figure in a pose: the texels that its mask covers, and the mask.
+#[derive(Clone, Debug)]
+pub(crate) struct Posed {
+    pub pose: Pose,
+    pub extent: Rect,
+    pub mask: Arc<Mask>,
 }
 
 impl Figure {

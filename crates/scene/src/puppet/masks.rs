@@ -3,20 +3,11 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::figure::{Figure, Pose};
-use super::grid::Rect;
-use crate::theatre::{Mask, Texels};
+use super::figure::{Figure, Pose, Posed};
+use crate::theatre::Texels;
 
 /// Bytes of masks that are kept of a puppet.
 const KEPT_BYTES: usize = 64 << 20;
-
-/// A figure in a pose: the texels that its mask covers, and the mask.
-#[derive(Clone, Debug)]
-pub(crate) struct Posed {
-    pub pose: Pose,
-    pub extent: Rect,
-    pub mask: Arc<Mask>,
-}
 
 /// The masks of the poses that a drawing was shown last: whoever draws keeps one, and a pose that comes again keeps its mask, the same [`Arc`] and
 /// the same [`Mask::id`]. One may be used for several scenes.

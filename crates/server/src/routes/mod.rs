@@ -8,6 +8,7 @@ mod health;
 mod links;
 mod pages;
 mod papers;
+mod plans;
 mod previews;
 mod sessions;
 mod stimuli;

@@ -1,6 +1,6 @@
 //! Looking at a study as participants will: the same answers as a session's, and nothing is stored.
 
-use super::sessions::{TrialPath, next_of, planned, trials_of};
+use super::plans::{TrialPath, next_of, planned, trials_of};
 use super::studies::told;
 use super::{Answered, Fresh};
 use crate::api::{

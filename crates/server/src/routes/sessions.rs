@@ -1,11 +1,11 @@
 //! Taking part: a session from its beginning to its code. Conditions never leave the server.
 
+use super::plans::{TrialPath, next_of, plan_of, trials_of};
 use super::studies::{StudyPath, told};
 use super::{Answered, Fresh, links, previews};
-use crate::api;
 use crate::api::{
     Acknowledgement, Answer, Completion, CreatedSession, Held, Known, NewSession, Problem, ProblemCode,
-    SessionState, SessionStatus, Trial, refusals,
+    SessionState, SessionStatus, refusals,
 };
 use crate::app::App;
 use crate::extract::{Body, Claim, ClientAddress, Object, Parameters, Participant, Query, SignedIn};
@@ -15,14 +15,12 @@ use crate::presenting::Whose;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use kelir_house::links::{Visit, is_of_link};
-use kelir_house::making::StimulusMap;
 use kelir_house::random_token;
 use kelir_store::{
-    Appended, Begun, Completed, NextTrials, PlannedSession, PlannedTrial, Progress, SentAnswer, Session,
-    SessionKind, SizedStimuli, StimulusHashes, StoreError, Taken, sha256_hex,
+    Appended, Begun, Completed, Progress, SentAnswer, Session, SessionKind, StoreError, Taken, sha256_hex,
 };
 use kelir_study::visits::Flag;
-use kelir_study::{Decision, StudyDefinition, TrialPlan, next_trials, trials};
+use kelir_study::{StudyDefinition, trials};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -39,16 +37,6 @@ pub(crate) struct SessionPath {
     /// The session's id.
     #[expect(dead_code, reason = "`Participant` reads it, with the token")]
     session: String,
-}
-
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Path)]
-pub(crate) struct TrialPath {
-    /// The session's id.
-    pub(super) session: String,
-    /// The trial's index, in plain digits.
-    #[param(value_type = u32)]
-    pub(super) trial_index: String,
 }
 
 refusals!(NotCreated: InvalidParameter, Unauthorized, LinkRefused, AlreadyBegun, AlreadyFinished, NotFound, NotReady, StimuliFailed, BadBody, BadJson, NotJson, TooLarge, InvalidField);
@@ -151,42 +139,6 @@ fn user_agent(headers: &HeaderMap) -> Option<String> {
     let sent = String::from_utf8_lossy(headers.get(header::USER_AGENT)?.as_bytes());
     Some(sent.chars().filter(|c| !c.is_control()).take(512).collect())
         .filter(|name: &String| !name.is_empty())
-}
-
-/// The plan of a slot with its stimuli filled in.
-fn plan_of(
-    study: &StudyDefinition,
-    stimuli: &StimulusMap,
-    slot: u32,
-) -> Result<PlannedSession, Box<Problem>> {
-    let TrialPlan { seed, trials, more, .. } = TrialPlan::for_slot(study, slot);
-    Ok(PlannedSession { seed, next: NextTrials { trials: planned(stimuli, trials)?, more } })
-}
-
-/// Trials with their stimuli filled in.
-pub(super) fn planned(
-    stimuli: &StimulusMap,
-    trials: Vec<kelir_study::Trial>,
-) -> Result<Vec<PlannedTrial>, Box<Problem>> {
-    let fill = |trial: kelir_study::Trial| {
-        let mut sizes: Vec<SizedStimuli> = Vec::new();
-        for (role, placed) in &trial.shown {
-            if sizes.is_empty() {
-                let of = stimuli.of(&placed.item, &placed.condition).map_err(Problem::internal)?;
-                sizes =
-                    of.iter().map(|one| SizedStimuli { size: one.size, stimuli: BTreeMap::new() }).collect();
-            }
-            for (rank, of_size) in sizes.iter_mut().enumerate() {
-                let found = stimuli.at(&placed.item, &placed.condition, rank).map_err(Problem::internal)?;
-                let (sha256, pixels_sha256) = (found.sha256.clone(), found.pixels_sha256.clone());
-                of_size.stimuli.insert(*role, StimulusHashes { sha256, pixels_sha256 });
-            }
-        }
-        let larger = sizes.split_off(sizes.len().min(1));
-        let smallest = sizes.pop().map(|smallest| smallest.stimuli).unwrap_or_default();
-        Ok(PlannedTrial { trial, stimuli: smallest, larger })
-    };
-    trials.into_iter().map(fill).collect()
 }
 
 refusals!(NoSession: Unauthorized, NotFound);
@@ -368,24 +320,6 @@ pub(crate) async fn post_answer(
     put_answer(claim, app, address, known, body).await
 }
 
-/// What follows in a session from what it was shown and answered.
-pub(super) fn next_of(
-    begun: &crate::loaded::Begun,
-    slot: u32,
-    progress: &Progress,
-) -> Result<NextTrials, Box<Problem>> {
-    let study = &begun.study;
-    let chose_target = |index: u32| {
-        let trial = &progress.trials.get(index as usize)?.trial;
-        let chosen = trial.trial.rules().chosen(progress.answers.get(&index)?)?;
-        Some(trial.shown.get(&chosen)?.condition == study.block(&trial.block_id)?.target)
-    };
-    let decided: Vec<kelir_study::Trial> =
-        progress.trials.iter().map(|planned| planned.trial.clone()).collect();
-    let Decision { trials, more } = next_trials(study, slot, &decided, &chose_target);
-    Ok(NextTrials { trials: planned(&begun.stimuli, trials)?, more })
-}
-
 refusals!(NotComplete: Unauthorized, NotFound, Incomplete);
 
 /// Finish a session whose every trial is stored; the code is the same each time.
@@ -452,40 +386,6 @@ async fn state_of(app: &App, session: &Session) -> Result<SessionState, Box<Prob
 /// The language in which a session is taken.
 fn language<'a>(study: &'a StudyDefinition, session: &'a Session) -> &'a str {
     study.language_for(session.display.get("language").and_then(Value::as_str))
-}
-
-pub(super) async fn trials_of(
-    app: &App,
-    whose: Whose<'_>,
-    study: &StudyDefinition,
-    planned: &[PlannedTrial],
-    answered: &[u32],
-) -> Result<Vec<Trial>, Box<Problem>> {
-    let [width, height] = study.size;
-    let mut trials = Vec::with_capacity(planned.len());
-    for planned in planned {
-        let trial = &planned.trial;
-        let mut told = app.presenter.tell(&app.store, whose, planned).await?.into_iter();
-        let shown = told.next().unwrap_or_default();
-        let larger =
-            planned.larger.iter().zip(told).map(|(SizedStimuli { size: [width, height], .. }, shown)| {
-                api::SizedStimuli { width: *width, height: *height, shown }
-            });
-        trials.push(Trial {
-            trial_index: trial.trial_index,
-            trial: trial.trial.rules().name(),
-            block_index: trial.block_index,
-            item_index: trial.item_index,
-            kind: trial.kind,
-            shown,
-            larger: larger.collect(),
-            settings: trial.trial.settings(),
-            width,
-            height,
-            answered: answered.contains(&trial.trial_index),
-        });
-    }
-    Ok(trials)
 }
 
 fn completion(study: &StudyDefinition, session: &Session, completion_code: String) -> Completion {
