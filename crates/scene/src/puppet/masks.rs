@@ -10,7 +10,7 @@ use crate::theatre::Texels;
 const KEPT_BYTES: usize = 64 << 20;
 
 /// The masks of the poses that a drawing was shown last: whoever draws keeps one, and a pose that comes again keeps its mask, the same [`Arc`] and
-/// the same [`Mask::id`]. One may be used for several scenes.
+/// the same [`Mask::id`](crate::Mask::id). One may be used for several scenes.
 #[derive(Debug, Default)]
 pub struct Masks {
     /// By the id of the mask that the figure has at rest.
