@@ -31,7 +31,7 @@ pub use export::{ExportError, codebook_csv, responses_csv, responses_table, spre
 pub use library::Library;
 pub use pairs::pairs_csv;
 pub use participants::participants_table;
-pub use render::RenderMaker;
+pub use render::{RenderMaker, techniques_in_words};
 pub use secret::random_token;
 pub use table::{Table, codebook_of};
 pub use task::{Made, Maker, Task};

@@ -30,6 +30,22 @@ pub(crate) fn camera(settings: &BTreeMap<String, Value>, magnification: f64) -> 
     Ok(camera)
 }
 
+/// Every technique with what can be turned on it, its range and where it stands: a sentence each, from the techniques' own tables.
+pub fn techniques_in_words() -> String {
+    let sentence = |technique: Technique| {
+        let stand = technique.stand();
+        let knobs = technique.knobs().iter().map(|knob| {
+            let stands =
+                stand.get(knob.name).map(|value| format!(", {value} unless given")).unwrap_or_default();
+            let unit = if knob.unit.is_empty() { String::new() } else { format!(" in {}", knob.unit) };
+            format!("`{}`{unit} ({}{stands}): {}", knob.name, knob.range, knob.about)
+        });
+        let knobs: Vec<String> = knobs.collect();
+        format!("`{}`, {}: {}.", technique.name(), technique.about(), knobs.join("; "))
+    };
+    Technique::all().map(sentence).join(" ")
+}
+
 impl Maker for RenderMaker {
     fn identity(&self, task: &Task<'_>, library: &Library) -> Result<String, String> {
         let job = job(task)?;

@@ -63,6 +63,7 @@ pub fn openapi_json() -> &'static str {
         // Through a value, whose keys have an order: the document's own extensions have none.
         let mut document = serde_json::to_value(document).expect("a document is texts, numbers and lists");
         name_keys_as_texts(&mut document);
+        tell_knobs(&mut document);
         format!("{document:#}\n")
     });
     &TEXT
@@ -79,6 +80,15 @@ fn name_keys_as_texts(schema: &mut Value) {
         }
         Value::Array(items) => items.iter_mut().for_each(name_keys_as_texts),
         _ => {}
+    }
+}
+
+/// A condition's knobs are those of its technique: kelir-study, whose type it is, knows none.
+fn tell_knobs(document: &mut Value) {
+    const KNOBS: &str = "/components/schemas/Condition/oneOf/0/properties/knobs/description";
+    if let Some(Value::String(description)) = document.pointer_mut(KNOBS) {
+        description.push(' ');
+        description.push_str(&kelir_house::techniques_in_words());
     }
 }
 

@@ -66,6 +66,16 @@ fn the_snapshot_is_the_document() {
     );
 }
 
+/// What can be turned on each technique is told where a condition's knobs are.
+#[test]
+fn knobs_are_those_of_the_techniques() {
+    let knobs = &document()["components"]["schemas"]["Condition"]["oneOf"][0]["properties"]["knobs"];
+    let told = knobs["description"].as_str().unwrap();
+    for phrase in ["`mc`, Monte Carlo", "`spp` (", "`bias_m` in m (a number from 0, 0.0 unless given)"] {
+        assert!(told.contains(phrase), "no {phrase:?} in {told}");
+    }
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn the_document_is_served() {
     let client = Client::unready().await;
