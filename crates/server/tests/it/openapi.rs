@@ -71,7 +71,11 @@ fn the_snapshot_is_the_document() {
 fn knobs_are_those_of_the_techniques() {
     let knobs = &document()["components"]["schemas"]["Condition"]["oneOf"][0]["properties"]["knobs"];
     let told = knobs["description"].as_str().unwrap();
-    for phrase in ["`mc`, Monte Carlo", "`spp` (", "`bias_m` in m (a number from 0, 0.0 unless given)"] {
+    for phrase in [
+        "`mc`, Monte Carlo",
+        "`spp` in samples a pixel (a whole number from 1 to",
+        "`bias_m` in m (a number from 0, 0.0 unless given)",
+    ] {
         assert!(told.contains(phrase), "no {phrase:?} in {told}");
     }
 }
