@@ -6,7 +6,7 @@ mod conditions;
 mod psychometric;
 
 use crate::conduct::{NEWEST_EDITION, ResponseRules, SessionRules};
-use crate::definition::{Block, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts};
+use crate::definition::{Block, EquivalenceBound, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts};
 use crate::display;
 use crate::fields::{IDENTIFIER, SECTION, identifier, integer, number, text};
 use crate::languages;
@@ -77,6 +77,7 @@ fn read_study(source: &Source, file: &str, root: &Node) -> Option<StudyDefinitio
     let session = SessionRules::read(&mut fields);
     let completion = completion::read(&mut fields, session.as_ref(), edition);
     let screening = read_screening(&mut fields);
+    let equivalence = read_equivalence(&mut fields);
     let texts = read_texts(&mut fields);
     let language = languages::read_language(&mut fields);
     let translations = languages::read_translations(&mut fields, language.as_deref());
@@ -98,6 +99,7 @@ fn read_study(source: &Source, file: &str, root: &Node) -> Option<StudyDefinitio
         conditions,
         blocks: blocks.into_iter().map(|read| read.block).collect(),
         screening: screening.unwrap_or_default(),
+        equivalence,
         edition: u32::try_from(edition?).ok()?,
         response: response?,
         session: session?,
@@ -131,6 +133,16 @@ fn read_screening(fields: &mut Fields<'_>) -> Option<Screening> {
         incomplete: incomplete.unwrap_or(false),
         flags: flags.unwrap_or_default(),
     })
+}
+
+fn read_equivalence(fields: &mut Fields<'_>) -> Option<EquivalenceBound> {
+    let mut fields = fields.given("equivalence", SECTION)?.table()?;
+    let rule = "a share of choices above 0 and below 0.5: from one half minus it to one half plus it";
+    let within = fields.must("within", rule, |v| number(v, 0.0, 0.5).filter(|x| *x > 0.0 && *x < 0.5));
+    let rule = "why a smaller difference does not matter, a text of 1 to 1000 characters";
+    let reason = fields.must("reason", rule, |v| text(v, 1000));
+    fields.done();
+    Some(EquivalenceBound { within: within?, reason: reason? })
 }
 
 pub(crate) fn read_texts(fields: &mut Fields<'_>) -> Option<Texts> {

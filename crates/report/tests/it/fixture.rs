@@ -17,6 +17,8 @@ pub(crate) struct Study {
     pub question: String,
     pub block_title: String,
     pub screening: String,
+    /// The bound of equivalence on the share; empty for none.
+    pub within: String,
     pub blocks: String,
     pub people: Vec<Vec<(&'static str, &'static str, f64)>>,
 }
@@ -56,6 +58,7 @@ impl Default for Study {
             question: "Which is real?".to_owned(),
             block_title: "Stills".to_owned(),
             screening: String::new(),
+            within: String::new(),
             blocks: BLOCKS.to_owned(),
             people: Vec::new(),
         }
@@ -137,13 +140,18 @@ impl Study {
         let quoted = |text: &str| serde_json::to_string(&plain(text)).unwrap();
         let photo =
             if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
+        let equivalence = match self.within.as_str() {
+            "" => String::new(),
+            within => format!("\nequivalence = {{ within = {within}, reason = \"Less would change nothing.\" }}"),
+        };
         let head = format!(
             "title = {}\nquestion = {}\nseed = 11\n\
              conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}\n\
-             screening = {{ {} }}",
+             screening = {{ {} }}{}",
             quoted(&self.title),
             quoted(&self.question),
-            self.screening
+            self.screening,
+            equivalence
         );
         let toml = fixtures::study(&head, [self.blocks.replace("TITLE", &quoted(&self.block_title))]);
         let mut design =
