@@ -2,14 +2,15 @@
 
 use kelir_frame::{Pixel, View};
 use kelir_scene::{Albedo, LinearImage, Screen};
+use rayon::prelude::*;
 
 /// Albedo per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PixelAlbedo {
     /// The same in every pixel.
     Uniform([f32; 3]),
-    /// Three planes of `width * height`, row-major, first row on top.
-    Image([Vec<f32>; 3]),
+    /// Planes of `width * height`, row-major, first row on top: three, or one where the image is grey.
+    Image(Vec<Vec<f32>>),
 }
 
 impl PixelAlbedo {
@@ -17,7 +18,15 @@ impl PixelAlbedo {
     pub fn at(&self, c: usize, k: usize) -> f32 {
         match self {
             Self::Uniform(a) => a[c],
-            Self::Image(planes) => planes[c][k],
+            Self::Image(planes) => planes[c.min(planes.len() - 1)][k],
+        }
+    }
+
+    /// Whether all channels are equal.
+    pub fn is_grey(&self) -> bool {
+        match self {
+            Self::Uniform([r, g, b]) => r == g && g == b,
+            Self::Image(planes) => planes.len() == 1,
         }
     }
 }
@@ -46,26 +55,52 @@ fn cells(k: usize, n: usize, source: usize, pixel: Pixel) -> (usize, Vec<f64>) {
     }
 }
 
-fn resample(image: &LinearImage, view: &View) -> [Vec<f32>; 3] {
-    let [w, h] = view.size;
-    let columns: Vec<_> = (0..w).map(|i| cells(i, w, image.width, view.pixel)).collect();
-    let rows: Vec<_> = (0..h).map(|j| cells(j, h, image.height, view.pixel)).collect();
-    let mut out = [vec![0f32; w * h], vec![0f32; w * h], vec![0f32; w * h]];
-    for (j, (y0, wy)) in rows.iter().enumerate() {
-        for (i, (x0, wx)) in columns.iter().enumerate() {
-            let mut sum = [0f64; 3];
-            for (dy, fy) in wy.iter().enumerate() {
-                let row = &image.rgb[(y0 + dy) * image.width + x0..];
-                for (texel, fx) in row.iter().zip(wx) {
-                    for c in 0..3 {
-                        sum[c] += fy * fx * f64::from(texel[c]);
-                    }
-                }
-            }
-            for c in 0..3 {
-                out[c][j * w + i] = sum[c] as f32;
+/// [`cells`] of every output cell of a row: weights of the kth source cell at `k * n`, 0 where a cell has fewer.
+struct Columns {
+    first: Vec<usize>,
+    weights: Vec<f64>,
+    most: usize,
+}
+
+impl Columns {
+    fn new(n: usize, source: usize, pixel: Pixel) -> Self {
+        let cells: Vec<_> = (0..n).map(|i| cells(i, n, source, pixel)).collect();
+        let most = cells.iter().map(|(_, weights)| weights.len()).max().unwrap_or(1);
+        let weight = |k: usize| cells.iter().map(move |(_, w)| w.get(k).copied().unwrap_or(0.0));
+        Self {
+            weights: (0..most).flat_map(weight).collect(),
+            first: cells.iter().map(|c| c.0).collect(),
+            most,
+        }
+    }
+
+    /// Adds `weight` times the means of channel `c` of a row of texels.
+    fn add(&self, row: &[[f32; 3]], c: usize, weight: f64, sums: &mut [f64]) {
+        for (i, sum) in sums.iter_mut().enumerate() {
+            for k in 0..self.most {
+                let texel = row[(self.first[i] + k).min(row.len() - 1)][c];
+                *sum += weight * self.weights[k * self.first.len() + i] * f64::from(texel);
             }
         }
     }
-    out
+}
+
+fn resample(image: &LinearImage, view: &View) -> Vec<Vec<f32>> {
+    let [w, h] = view.size;
+    let columns = Columns::new(w, image.width, view.pixel);
+    let rows: Vec<_> = (0..h).map(|j| cells(j, h, image.height, view.pixel)).collect();
+    let grey = image.rgb.par_chunks(1 << 14).all(|part| part.iter().all(|[r, g, b]| r == g && g == b));
+    let plane = |c: usize| {
+        let mut out = vec![0f32; w * h];
+        out.par_chunks_mut(w).zip(&rows).for_each_init(Vec::new, |sums, (out, (y0, weights))| {
+            sums.clear();
+            sums.resize(w, 0f64);
+            for (dy, weight) in weights.iter().enumerate() {
+                columns.add(&image.rgb[(y0 + dy) * image.width..][..image.width], c, *weight, sums);
+            }
+            out.iter_mut().zip(&*sums).for_each(|(out, sum)| *out = *sum as f32);
+        });
+        out
+    };
+    (0..if grey { 1 } else { 3 }).map(plane).collect()
 }

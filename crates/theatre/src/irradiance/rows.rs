@@ -21,6 +21,8 @@ pub struct UnitRows {
     /// The x of every column's pixel centre, or of every `stride`th, from one before the first to two behind the last.
     columns: Vec<f64>,
     pub(super) stride: usize,
+    /// Weights of the four points around a column, one row a point, for the columns from one point to the next.
+    taps: [Vec<f64>; 4],
     /// Nodes on the emitter, metres, and their weights, where one rule serves every pixel.
     nodes: Option<Vec<(DVec2, f64)>>,
 }
@@ -59,7 +61,9 @@ impl UnitRows {
             }
             EmitterShape::Disk { .. } => None,
         };
-        Self { shape: *shape, lamp_m, screen, size, columns, stride, nodes }
+        let weights: Vec<_> = (0..stride).map(|k| lagrange(k as f64 / stride as f64)).collect();
+        let taps = [0, 1, 2, 3].map(|p| weights.iter().map(|w| w[p]).collect());
+        Self { shape: *shape, lamp_m, screen, size, columns, stride, taps, nodes }
     }
 
     /// The values of row `j` into `out`, one a column.
@@ -79,13 +83,8 @@ impl UnitRows {
                 }
                 let mut coarse = vec![0.0; self.columns.len()];
                 add(&mut coarse);
-                let weights: Vec<[f64; 4]> =
-                    (0..self.stride).map(|k| lagrange(k as f64 / self.stride as f64)).collect();
-                for (out, c) in out.chunks_mut(self.stride).zip(coarse.windows(4)) {
-                    for (o, w) in out.iter_mut().zip(&weights) {
-                        *o = w[0] * c[0] + w[1] * c[1] + w[2] * c[2] + w[3] * c[3];
-                    }
-                }
+                let [before, from, to, after] = &self.taps;
+                interpolate(&coarse, self.stride, [before, from, to, after], out);
             }
             None => out
                 .iter_mut()
@@ -100,6 +99,18 @@ fn lagrange(t: f64) -> [f64; 4] {
     let (a, b, c, d) = (t + 1.0, t, t - 1.0, t - 2.0);
     [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0]
 }
+
+#[inline(always)]
+fn interpolate_generic(coarse: &[f64], stride: usize, taps: [&[f64]; 4], out: &mut [f64]) {
+    for (out, c) in out.chunks_mut(stride).zip(coarse.windows(4)) {
+        let n = out.len();
+        let [before, from, to, after] = taps.map(|weights| &weights[..n]);
+        for k in 0..n {
+            out[k] = before[k] * c[0] + from[k] * c[1] + to[k] * c[2] + after[k] * c[3];
+        }
+    }
+}
+multiversion! { fn interpolate(coarse: &[f64], stride: usize, taps: [&[f64]; 4], out: &mut [f64]) = interpolate_generic; }
 
 #[inline(always)]
 fn add_node_generic(columns: &[f64], x: f64, dy2: f64, h: f64, weight: f64, out: &mut [f64]) {

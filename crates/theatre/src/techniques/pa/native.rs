@@ -142,14 +142,14 @@ impl Native {
         step(&mut stats, "plan");
         self.tables.prepare(theatre, &plan, skips.has(Skips::KEPT_TABLES), &mut stats);
         step(&mut stats, "tables");
-        if !skips.has(Skips::KEPT_SCREEN) {
-            self.background = None;
+        let keep = skips.has(Skips::KEPT_SCREEN);
+        if !keep {
             self.domes.clear();
         }
-        let reused = self.background.as_ref().is_some_and(|b| b.serves(theatre, view));
+        let reused = keep && self.background.as_ref().is_some_and(|b| b.serves(theatre, view));
         let mut background = match self.background.take() {
             Some(background) if reused => background,
-            _ => Background::new(theatre, view),
+            before => Background::new(theatre, view, before, keep),
         };
         stats.counts.insert("background_reused".into(), u64::from(reused));
         if let Sink::Display { white, .. } = sink
