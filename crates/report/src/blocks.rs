@@ -99,7 +99,8 @@ fn cells(number: &Number) -> Vec<Cell> {
         let level =
             if i.level == LEVEL { String::new() } else { format!("{}%: ", fixed(100.0 * i.level, 0)) };
         let end = |x: f64| if x.is_finite() { fixed(x, number.decimals.max(1)) } else { "beyond".to_owned() };
-        let ends: Vec<String> = [i.low, i.high].iter().filter(|x| x.is_finite()).map(f64::to_string).collect();
+        let ends: Vec<String> =
+            [i.low, i.high].iter().filter(|x| x.is_finite()).map(f64::to_string).collect();
         let shown = format!("{level}{} to {}", end(i.low), end(i.high));
         Cell { shown, exact: Some(ends.join(" ")).filter(|ends| !ends.is_empty()), note: None }
     });

@@ -243,7 +243,8 @@ pub(crate) fn judged(report: &StudyReport) -> Vec<Judged<'_>> {
                 .filter(|s| s.item == pair.id && block.summary.conditions.contains(&s.condition))
             {
                 let Some(error) = stimulus.error() else { continue };
-                let turned = |Interval { low, high, level }| Interval { low: 1.0 - high, high: 1.0 - low, level };
+                let turned =
+                    |Interval { low, high, level }| Interval { low: 1.0 - high, high: 1.0 - low, level };
                 let (share, interval) = if stimulus.condition == block.summary.target {
                     (target.proportion, target.interval())
                 } else {

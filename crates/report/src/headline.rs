@@ -174,7 +174,9 @@ fn not_shown(report: &StudyReport) -> Vec<String> {
         }
         let Some(p) = summary.p else {
             let why = summary.note.as_deref().unwrap_or("t is not defined");
-            lines.push(format!("{title}: whether participants can tell {a} from {b}, by the planned t-test: {why}."));
+            lines.push(format!(
+                "{title}: whether participants can tell {a} from {b}, by the planned t-test: {why}."
+            ));
             continue;
         };
         if p < ALPHA && !significant_after_holm(block) {
@@ -193,10 +195,12 @@ fn not_shown(report: &StudyReport) -> Vec<String> {
                 found.within,
                 p_equals(found.tests.p)
             ),
-            None => "the study file states no bound within which a share would count as equivalent to a half".to_owned(),
+            None => "the study file states no bound within which a share would count as equivalent to a half"
+                .to_owned(),
         };
-        let mut line =
-            format!("{title}: that participants cannot tell {a} from {b}. Not significant is not the same: {equivalence}");
+        let mut line = format!(
+            "{title}: that participants cannot tell {a} from {b}. Not significant is not the same: {equivalence}"
+        );
         if let Some(bayes) = &analysis.bayes {
             let (ratio, hypothesis) =
                 if bayes.bf01 >= 1.0 { (bayes.bf01, "no effect") } else { (bayes.bf10, "an effect") };

@@ -189,9 +189,14 @@ fn interval_of(share: &Proportion) -> String {
     match found.method {
         ShareMethod::Wilson => "Wilson's interval; n: choices, one a participant".to_owned(),
         ShareMethod::ClusteredWilson => {
-            format!("Wilson's interval of {:.0} independent choices, the worth of those of {people}; n: choices", found.effective_trials)
+            format!(
+                "Wilson's interval of {:.0} independent choices, the worth of those of {people}; n: choices",
+                found.effective_trials
+            )
         }
-        ShareMethod::ClopperPearson => format!("all alike: Clopper and Pearson's interval over {people}; n: choices"),
+        ShareMethod::ClopperPearson => {
+            format!("all alike: Clopper and Pearson's interval over {people}; n: choices")
+        }
     }
 }
 
@@ -241,7 +246,8 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         let items = summary.items as f64;
         let name = format!("share − ½, equivalent within ±{}? (proportion)", found.within);
         let Interval { low, high, level } = found.tests.interval_90;
-        let row = rows("equivalence (TOST)").number(name, (mean - summary.mu) / items, 4).with_p(found.tests.p);
+        let row =
+            rows("equivalence (TOST)").number(name, (mean - summary.mu) / items, 4).with_p(found.tests.p);
         let row = row.within(Interval { low: low / items, high: high / items, level });
         all.push(row.noted("p below 0.05 shows equivalence; 90% interval"));
     }
@@ -319,19 +325,17 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         Role::Left | Role::Right => ("share of the left picture (proportion)", "a bias of side"),
         Role::First | Role::Second => ("share of the first interval (proportion)", "a bias of order"),
     };
-    all.extend(
-        block
-            .first
-            .as_ref()
-            .map(|first| {
-                let row = rows("sides").share(what, first);
-                let note = format!("{}; far from 0.5: {bias}", row.note);
-                row.noted(note)
-            }),
-    );
+    all.extend(block.first.as_ref().map(|first| {
+        let row = rows("sides").share(what, first);
+        let note = format!("{}; far from 0.5: {bias}", row.note);
+        row.noted(note)
+    }));
     if let Some(found) = &block.first_intraclass {
         let row = rows("sides").number("intraclass correlation of sides (−1 to 1)", found.icc, 3);
-        all.push(row.of_n(found.participants, "above 0, some participants lean one way and some the other, which cancels in the share"));
+        all.push(row.of_n(
+            found.participants,
+            "above 0, some participants lean one way and some the other, which cancels in the share",
+        ));
     }
     if let Some(times) = &block.rt_ms {
         let row = rows("response time");
@@ -378,7 +382,10 @@ pub(crate) fn psychometric(sample: Sample, block: &str, found: &PsychometricRepo
         let row = rows.number(format!("threshold, maximum likelihood ({unit})"), b.estimate, 4);
         let note = match found.at_bound {
             0 => "interval from resampled participants".to_owned(),
-            n => format!("interval from resampled participants; {n} of {} resamples ended on the edge of the range searched", b.replicates),
+            n => format!(
+                "interval from resampled participants; {n} of {} resamples ended on the edge of the range searched",
+                b.replicates
+            ),
         };
         all.push(row.within(resampled(b)).noted(note));
     }
@@ -425,7 +432,11 @@ pub(crate) fn of_scale(sample: Sample, found: &ScaleIntervals) -> Vec<Number> {
     for d in &found.differences {
         let row = rows.named("scale, differences").number(format!("{} − {} (JOD)", d.a, d.b), d.jod, 3);
         let row = Number { interval: within(d.low, d.high), ..row };
-        let patterns = if d.p_exact { "all patterns of signs".to_owned() } else { count(found.flips as u64, "random pattern") };
+        let patterns = if d.p_exact {
+            "all patterns of signs".to_owned()
+        } else {
+            count(found.flips as u64, "random pattern")
+        };
         let floor = (!d.p_exact).then_some(d.p_smallest);
         all.push(row.with_p(d.p).resolved_to(floor).noted(format!("sign flips of participants, {patterns}")));
         let corrected = format!("{} − {}, p corrected by Holm for all differences (JOD)", d.a, d.b);

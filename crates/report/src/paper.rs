@@ -1,8 +1,8 @@
 //! The paper that a study repeats, beside the study's own results.
 
-use crate::{StudyReport, figures};
 use crate::document::{Cell, Piece, Row, Section, Table};
 use crate::format::{MISSING, fixed, p_value, range, significant};
+use crate::{StudyReport, figures};
 use kelir_stats::paper::{Comparison, Replication};
 
 /// The paper's own tests beside this study's.
@@ -96,7 +96,9 @@ fn equivalence(paper: &Replication) -> Table {
         let of = |c: &Comparison| c.equivalence[k].tests.p;
         let bound = paper.comparisons[0].equivalence[k].within;
         let cells = paper.comparisons.iter().map(|c| Cell::number(p_value(of(c)), of(c)));
-        Row::Cells(std::iter::once(Cell::number(format!("±{}", fixed(bound, 2)), bound)).chain(cells).collect())
+        Row::Cells(
+            std::iter::once(Cell::number(format!("±{}", fixed(bound, 2)), bound)).chain(cells).collect(),
+        )
     });
     let columns: Vec<String> = std::iter::once("bound on the share#".to_owned())
         .chain(paper.comparisons.iter().map(|c| format!("{}#", c.title)))

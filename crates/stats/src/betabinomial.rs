@@ -46,7 +46,11 @@ const FAR: f64 = 20.0;
 impl Sums {
     fn of(c: f64, theta: f64, k: u64) -> Sums {
         // Where kθ vanishes beside c, gamma functions would cancel; what is left of the power series is exact.
-        if theta * k as f64 <= 1e-5 * c { Sums::nearly_equal(c, theta, k as f64) } else { Sums::rising(c, theta, k) }
+        if theta * k as f64 <= 1e-5 * c {
+            Sums::nearly_equal(c, theta, k as f64)
+        } else {
+            Sums::rising(c, theta, k)
+        }
     }
 
     /// The power series in θ.
@@ -166,7 +170,8 @@ mod tests {
             for j in 0..count {
                 let j = j as f64;
                 let r = 1.0 / (c + j * theta);
-                let terms = [-r.ln(), slope * r, j * r, -slope * slope * r * r, -slope * j * r * r, -j * j * r * r];
+                let terms =
+                    [-r.ln(), slope * r, j * r, -slope * slope * r * r, -slope * j * r * r, -j * j * r * r];
                 d.iter_mut().zip(terms).for_each(|(sum, term)| *sum += sign * term);
             }
         }
@@ -175,14 +180,19 @@ mod tests {
 
     #[test]
     fn many_answers_give_what_the_sum_over_them_gives() {
-        for (k, n, p) in [(3000, 5000, 0.61), (2, 4000, 0.01), (90_000, 100_000, 0.83), (0, 700, 0.2), (700, 700, 0.2)] {
+        for (k, n, p) in
+            [(3000, 5000, 0.61), (2, 4000, 0.01), (90_000, 100_000, 0.83), (0, 700, 0.2), (700, 700, 0.2)]
+        {
             for theta in [0.0, 1e-300, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3, 0.02, 0.4, 30.0] {
                 let d = log_likelihood(k, n, p, theta);
                 let fast = [d.value, d.p, d.theta, d.p_p, d.p_theta, d.theta_theta];
                 for (which, (a, b)) in fast.iter().zip(plain(k, n, p, theta)).enumerate() {
                     // Derivatives in θ are differences of sums that are larger by far.
                     let size = plain(k, k, p, theta)[which].abs() + plain(0, n, p, theta)[which].abs();
-                    assert!((a - b).abs() <= 1e-7 * b.abs() + 1e-9 * size, "{which} at {k}/{n}, {p}, {theta}: {a} {b}");
+                    assert!(
+                        (a - b).abs() <= 1e-7 * b.abs() + 1e-9 * size,
+                        "{which} at {k}/{n}, {p}, {theta}: {a} {b}"
+                    );
                 }
             }
         }

@@ -255,7 +255,8 @@ mod tests {
         close(video.test.t, -3.983482, 5e-7);
         close(video.test.p, 3.66864e-4, 5e-10);
         // Half a choice of two pairs is a quarter of the share.
-        let within = |c: &Comparison, share: f64| c.equivalence.iter().find(|e| e.within == share).unwrap().tests.p;
+        let within =
+            |c: &Comparison, share: f64| c.equivalence.iter().find(|e| e.within == share).unwrap().tests.p;
         close(within(mc, 0.25), 0.0114, 5e-5);
         // The curve falls as the bound grows, and what differs significantly is equivalent within no bound that a reader would take.
         assert!(mc.equivalence.windows(2).all(|two| two[0].tests.p > two[1].tests.p));

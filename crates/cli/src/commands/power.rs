@@ -49,7 +49,8 @@ fn threads() -> usize {
 
 /// The answer so far.
 fn interim(found: &Power, of: u64) -> String {
-    let needed = needed(found).unwrap_or_else(|| "Nothing of what is asked for is there to be found.".to_owned());
+    let needed =
+        needed(found).unwrap_or_else(|| "Nothing of what is asked for is there to be found.".to_owned());
     format!("After {} of {of} simulated studies of each size:\n{needed}", found.simulations)
 }
 

@@ -142,7 +142,9 @@ impl Study {
             if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
         let equivalence = match self.within.as_str() {
             "" => String::new(),
-            within => format!("\nequivalence = {{ within = {within}, reason = \"Less would change nothing.\" }}"),
+            within => {
+                format!("\nequivalence = {{ within = {within}, reason = \"Less would change nothing.\" }}")
+            }
         };
         let head = format!(
             "title = {}\nquestion = {}\nseed = 11\n\

@@ -132,7 +132,10 @@ fn the_headline_says_what_was_and_what_was_not_shown() {
         found.contains("more often than half the time, t(31) = 4.209")
             && found.contains("less often than half the time, t(32)")
     );
-    assert!(not_shown.contains("the study file states no bound within which a share would count"), "{not_shown}");
+    assert!(
+        not_shown.contains("the study file states no bound within which a share would count"),
+        "{not_shown}"
+    );
     assert!(not_shown.contains("2.1 times likelier under no effect"), "{not_shown}");
     assert!(not_shown.contains("below d = 0.51 is missed"), "{not_shown}");
     assert_eq!(
@@ -145,7 +148,10 @@ fn the_headline_says_what_was_and_what_was_not_shown() {
     assert!(not_shown.contains("within the study's bound of ±0.1 on the share is not shown"), "{not_shown}");
     // Half a choice of two is a quarter of the share: the first block is equivalent within that, which is found and not among what is not shown.
     let (found, not_shown) = headline(counts, "0.25");
-    assert!(found.contains("equivalent to it within the study's bound of ±0.25 on the share, p = 0.0114"), "{found}");
+    assert!(
+        found.contains("equivalent to it within the study's bound of ±0.25 on the share, p = 0.0114"),
+        "{found}"
+    );
     assert!(!not_shown.contains("participants cannot tell"), "{not_shown}");
     // What is not defined is not shown either, and stays in the list.
     let (_, not_shown) = headline([[0, 0, 32], [3, 10, 19], [26, 7, 0]], "0.1");

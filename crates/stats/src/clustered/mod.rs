@@ -14,8 +14,8 @@ mod share;
 #[cfg(test)]
 mod tests;
 
-pub use bootstrap::{Bootstrap, BootstrapMethod, MIN_REPLICATES, bootstrap};
 pub(crate) use bootstrap::quantile;
+pub use bootstrap::{Bootstrap, BootstrapMethod, MIN_REPLICATES, bootstrap};
 pub use intraclass::{IccEstimator, IndependenceWarning, Intraclass, independence_warning, intraclass};
 pub use logit::{Coefficient, Correction, RobustLogit, Row, robust_logit};
 pub(crate) use logit::{logistic, softplus};

@@ -46,7 +46,13 @@ pub fn share_interval(clusters: &[Cluster], level: f64) -> Result<ShareInterval>
     let clusters = answered(clusters)?;
     let (m, trials) = (clusters.len() as u64, clusters.iter().map(|c| c.trials).sum::<u64>());
     let successes = clusters.iter().map(|c| c.successes).sum::<u64>();
-    let found = |[low, high]: [f64; 2], method, effective_trials| ShareInterval { low, high, level, method, effective_trials };
+    let found = |[low, high]: [f64; 2], method, effective_trials| ShareInterval {
+        low,
+        high,
+        level,
+        method,
+        effective_trials,
+    };
     if trials == m {
         let i = wilson(successes, trials, level)?;
         return Ok(found([i.low, i.high], ShareMethod::Wilson, trials as f64));

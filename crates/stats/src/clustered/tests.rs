@@ -159,7 +159,10 @@ fn the_warning_is_due_when_trials_are_shared() {
     let alternating = independence_warning(&Cluster::from_counts(&[1, 19, 0])).unwrap().unwrap();
     assert!((alternating.icc.unwrap() + 19.0 / 21.0).abs() < 1e-14, "{alternating:?}");
     assert_eq!(alternating.effective_trials, Some(40.0));
-    assert!(alternating.message.contains("alternate") && !alternating.message.contains("worth"), "{alternating:?}");
+    assert!(
+        alternating.message.contains("alternate") && !alternating.message.contains("worth"),
+        "{alternating:?}"
+    );
     // With everybody the same the correlation is undefined, but the trials are still shared.
     assert!(independence_warning(&Cluster::from_counts(&[0, 0, 9])).unwrap().unwrap().icc.is_none());
 }
@@ -169,11 +172,17 @@ fn scores_that_vanish_give_no_interval_and_no_certainty() {
     // Everybody presses one key, and the sides are balanced: each chooses the target in half of the trials.
     for clusters in [Cluster::from_counts(&[0, 20, 0]), Cluster::from_counts(&[0, 7, 0, 0])] {
         let error = robust_logit(&Row::intercept_only(&clusters), Correction::Cr1).unwrap_err();
-        assert!(matches!(error, StatsError::NoSolution { what: "the cluster-robust interval", .. }), "{error}");
+        assert!(
+            matches!(error, StatsError::NoSolution { what: "the cluster-robust interval", .. }),
+            "{error}"
+        );
     }
     // Control: one who chose otherwise is a difference between participants.
     let one = Cluster::from_counts(&[0, 20, 1]);
-    assert!(robust_logit(&Row::intercept_only(&one), Correction::Cr1).unwrap().coefficients[0].standard_error > 0.0);
+    assert!(
+        robust_logit(&Row::intercept_only(&one), Correction::Cr1).unwrap().coefficients[0].standard_error
+            > 0.0
+    );
 }
 
 #[test]
@@ -193,8 +202,12 @@ fn a_finite_logit_is_found_however_far_it_reaches() {
         assert!(score.abs() < 1e-9, "{score}");
     }
     // One success of 10¹⁰ trials: log odds of −23 by hand.
-    let rare = [(1, 1, 5_000_000_000), (2, 0, 5_000_000_000)]
-        .map(|(participant, successes, trials)| Row { participant, successes, trials, x: vec![1.0] });
+    let rare = [(1, 1, 5_000_000_000), (2, 0, 5_000_000_000)].map(|(participant, successes, trials)| Row {
+        participant,
+        successes,
+        trials,
+        x: vec![1.0],
+    });
     let found = robust_logit(&rare, Correction::Cr1).unwrap().coefficients[0].estimate;
     assert!((found - (1e-10f64 / (1.0 - 1e-10)).ln()).abs() < 1e-6, "{found}");
     // Control: without the overlap there is no maximum, and quasi-complete separation is none either.

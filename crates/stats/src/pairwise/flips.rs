@@ -56,7 +56,9 @@ pub(super) fn scores(
     let (mut cross, mut nuisance) = (vec![0.0; q], vec![0.0; q * q]);
     for i in 0..n {
         for j in 0..n {
-            let (Some(row), Some(column)) = (merged(i).checked_sub(1), merged(j).checked_sub(1)) else { continue };
+            let (Some(row), Some(column)) = (merged(i).checked_sub(1), merged(j).checked_sub(1)) else {
+                continue;
+            };
             nuisance[row * q + column] += information[i * n + j];
         }
         if let Some(row) = merged(i).checked_sub(1) {
@@ -64,7 +66,8 @@ pub(super) fn scores(
         }
     }
     if q > 0 {
-        let l = linalg::cholesky(&nuisance, q).ok_or(StatsError::NotConverged { what: "the test of a difference" })?;
+        let l = linalg::cholesky(&nuisance, q)
+            .ok_or(StatsError::NotConverged { what: "the test of a difference" })?;
         linalg::solve(&l, q, &mut cross);
     }
     observers
@@ -93,22 +96,14 @@ pub(super) fn flip(columns: &[Vec<f64>], flips: usize, seed: u64) -> Vec<Flipped
     let sampled: Vec<usize> = (0..columns.len()).filter(|&i| found[i].is_none()).collect();
     let mut reached = vec![0usize; columns.len()];
     let observers = columns.first().map_or(0, Vec::len);
-    let mut sums = vec![0.0; columns.len()];
+    let mut signs = vec![0; observers.div_ceil(64)];
     for replicate in 0..if sampled.is_empty() { 0 } else { flips } {
         let mut random = Random::stream(seed, replicate as u64);
-        sums.fill(0.0);
-        let mut bits = 0;
-        for observer in 0..observers {
-            if observer % 64 == 0 {
-                bits = random.next_u64();
-            }
-            let up = bits >> (observer % 64) & 1 == 1;
-            for &i in &sampled {
-                sums[i] += if up { columns[i][observer] } else { -columns[i][observer] };
-            }
-        }
+        signs.fill_with(|| random.next_u64());
+        let signed = |(k, x): (usize, &f64)| if signs[k / 64] >> (k % 64) & 1 == 1 { *x } else { -x };
         for &i in &sampled {
-            reached[i] += usize::from(sums[i].abs() >= columns[i].iter().sum::<f64>().abs() * (1.0 - ROUNDING));
+            let sum: f64 = columns[i].iter().enumerate().map(signed).sum();
+            reached[i] += usize::from(sum.abs() >= columns[i].iter().sum::<f64>().abs() * (1.0 - ROUNDING));
         }
     }
     let smallest = 1.0 / (1.0 + flips as f64);
@@ -120,7 +115,9 @@ pub(super) fn flip(columns: &[Vec<f64>], flips: usize, seed: u64) -> Vec<Flipped
 
 /// The test over all 2ⁿ patterns of signs, one sign held, as their mirror images give the same size.
 fn every_pattern(scores: &[f64]) -> Flipped {
-    let Some((first, rest)) = scores.split_first() else { return Flipped { p: 1.0, smallest: 1.0, exact: true } };
+    let Some((first, rest)) = scores.split_first() else {
+        return Flipped { p: 1.0, smallest: 1.0, exact: true };
+    };
     let size = scores.iter().sum::<f64>().abs();
     let size = size - ROUNDING * scores.iter().map(|x| x.abs()).sum::<f64>();
     let patterns = 1usize << rest.len();

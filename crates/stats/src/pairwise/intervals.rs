@@ -144,10 +144,20 @@ pub fn observer_intervals(
             }
         })
         .collect();
-    Ok(ScaleIntervals { conditions, differences, level, observers: answered.len(), flips, seed, note, scale: whole })
+    Ok(ScaleIntervals {
+        conditions,
+        differences,
+        level,
+        observers: answered.len(),
+        flips,
+        seed,
+        note,
+        scale: whole,
+    })
 }
 
-const DISCONNECTED: &str = "No intervals: without one of the participants some conditions are compared with no other.";
+const DISCONNECTED: &str =
+    "No intervals: without one of the participants some conditions are compared with no other.";
 const ALIKE: &str = "No interval where leaving out any one participant changes nothing: they chose alike, which tells their number and not how far \
      others would differ.";
 

@@ -67,8 +67,7 @@ pub fn scale_power(design: &ScaleDesign, runs: u64, seed: u64) -> Result<ScalePo
         let mut random = Random::stream(seed, run);
         let observers: Vec<Observer> =
             (0..design.observers).map(|o| observe(design, &pairs, o, &mut random)).collect();
-        let Ok(result) =
-            observer_intervals(&names, &observers, design.options, FLIPS, design.level, run)
+        let Ok(result) = observer_intervals(&names, &observers, design.options, FLIPS, design.level, run)
         else {
             found.iter_mut().for_each(|f| f.push(None));
             inside.extend(pairs.iter().map(|_| None));

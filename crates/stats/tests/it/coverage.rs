@@ -1,4 +1,5 @@
 //! What intervals and tests over participants promise, held to exact enumeration where there is one and to simulation elsewhere.
+#![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use kelir_stats::clustered::{Cluster, ShareMethod, share_interval};
 use kelir_stats::inference::{clopper_pearson, wilson};
@@ -11,14 +12,19 @@ fn urn(pairs: usize, p: f64, icc: f64) -> Vec<f64> {
     let theta = icc / (1.0 - icc);
     let rising = |c: f64, k: usize| (0..k).map(|j| c + j as f64 * theta).product::<f64>();
     let choose = |k: usize| (0..k).map(|j| (pairs - j) as f64 / (k - j) as f64).product::<f64>();
-    (0..=pairs)
-        .map(|k| choose(k) * rising(p, k) * rising(1.0 - p, pairs - k) / rising(1.0, pairs))
-        .collect()
+    (0..=pairs).map(|k| choose(k) * rising(p, k) * rising(1.0 - p, pairs - k) / rising(1.0, pairs)).collect()
 }
 
 /// Every table of `n` participants over the numbers 0 … `kinds` − 1, with its probability when each number has the given one.
 fn tables(n: u64, of: &[f64], mut seen: impl FnMut(&[u64], f64)) {
-    fn walk(left: u64, at: usize, of: &[f64], p: f64, counts: &mut Vec<u64>, seen: &mut impl FnMut(&[u64], f64)) {
+    fn walk(
+        left: u64,
+        at: usize,
+        of: &[f64],
+        p: f64,
+        counts: &mut Vec<u64>,
+        seen: &mut impl FnMut(&[u64], f64),
+    ) {
         if at + 1 == of.len() {
             counts.push(left);
             seen(counts, p * of[at].powi(left as i32));
@@ -80,18 +86,26 @@ fn an_interval_of_a_share_is_what_its_method_says() {
     assert_eq!(unanimous.low, clopper_pearson(6, 6, 0.95).unwrap().low);
     // One choice each: choices are participants.
     let single = of(&[7, 13]);
-    assert_eq!((single.low, single.high), (wilson(13, 20, 0.95).unwrap().low, wilson(13, 20, 0.95).unwrap().high));
+    assert_eq!(
+        (single.low, single.high),
+        (wilson(13, 20, 0.95).unwrap().low, wilson(13, 20, 0.95).unwrap().high)
+    );
     // Who never contradicts themselves counts once, however often they were asked; statsmodels 0.14, proportion_confint(13, 20, method = "wilson").
     let consistent = share_interval(&Cluster::from_counts(&[7, 0, 0, 0, 13]), 0.95).unwrap();
     assert_eq!((consistent.method, consistent.effective_trials), (ShareMethod::ClusteredWilson, 20.0));
-    assert!((consistent.low - 0.4329).abs() < 5e-5 && (consistent.high - 0.8188).abs() < 5e-5, "{consistent:?}");
+    assert!(
+        (consistent.low - 0.4329).abs() < 5e-5 && (consistent.high - 0.8188).abs() < 5e-5,
+        "{consistent:?}"
+    );
     // Everybody splits in half: an interval about a half, and never of width 0.
     let halves = of(&[0, 20, 0]);
     assert!(halves.low < 0.4 && halves.high > 0.6 && halves.effective_trials <= 40.0, "{halves:?}");
     // One participant with several choices tells nothing of others.
     let alone = share_interval(&[Cluster { successes: 1, trials: 2 }], 0.95).unwrap_err();
     assert!(alone.to_string().contains("one participant"), "{alone}");
-    assert!(share_interval(&[], 0.95).is_err() && share_interval(&Cluster::from_counts(&[1, 1]), 1.0).is_err());
+    assert!(
+        share_interval(&[], 0.95).is_err() && share_interval(&Cluster::from_counts(&[1, 1]), 1.0).is_err()
+    );
 }
 
 fn names() -> Vec<String> {
@@ -104,7 +118,10 @@ fn observer(id: usize, pattern: usize) -> Observer {
         let [winner, loser] = if pattern >> k & 1 == 1 { [first, second] } else { [second, first] };
         Choice { winner, loser, times: 1 }
     };
-    Observer { id: id.to_string(), choices: [[0, 1], [1, 2], [0, 2]].into_iter().enumerate().map(choice).collect() }
+    Observer {
+        id: id.to_string(),
+        choices: [[0, 1], [1, 2], [0, 2]].into_iter().enumerate().map(choice).collect(),
+    }
 }
 
 fn judged(patterns: impl IntoIterator<Item = usize>) -> ScaleIntervals {
@@ -125,7 +142,10 @@ fn unanimous_observers_give_the_sign_tests_p_and_no_interval() {
     }
     // Many: p is bounded by the number of patterns that were tried.
     let many = judged(std::iter::repeat_n(0b111, 30));
-    assert!(many.differences.iter().all(|d| !d.p_exact && d.p == d.p_smallest && d.p == 1.0 / 2000.0), "{many:?}");
+    assert!(
+        many.differences.iter().all(|d| !d.p_exact && d.p == d.p_smallest && d.p == 1.0 / 2000.0),
+        "{many:?}"
+    );
 }
 
 #[test]
@@ -138,7 +158,11 @@ fn observers_who_split_two_conditions_in_half_show_no_difference() {
     let observers: Vec<Observer> =
         (0..14).map(|id| Observer { id: id.to_string(), choices: choices(id % 2) }).collect();
     let found = observer_intervals(&names(), &observers, ScaleOptions::default(), 1999, 0.95, 7).unwrap();
-    assert!(found.differences[0].jod.abs() < 1e-9 && found.differences[0].p > 0.5, "{:?}", found.differences[0]);
+    assert!(
+        found.differences[0].jod.abs() < 1e-9 && found.differences[0].p > 0.5,
+        "{:?}",
+        found.differences[0]
+    );
     let same: Vec<Observer> =
         (0..14).map(|id| Observer { id: id.to_string(), choices: choices(0)[..4].to_vec() }).collect();
     let found = observer_intervals(&names(), &same, ScaleOptions::default(), 1999, 0.95, 7).unwrap();
@@ -184,7 +208,8 @@ fn scale_rates(jod: [f64; 3], n: usize, repeats: u64, runs: u64) -> [f64; 3] {
                 Observer { id: id.to_string(), choices }
             })
             .collect();
-        let found = observer_intervals(&names(), &observers, ScaleOptions::default(), 1000, 0.95, run).unwrap();
+        let found =
+            observer_intervals(&names(), &observers, ScaleOptions::default(), 1000, 0.95, run).unwrap();
         for (d, [i, j]) in found.differences.iter().zip([[0, 1], [0, 2], [1, 2]]) {
             let truth = jod[i] - jod[j];
             all += 1.0;
@@ -204,13 +229,19 @@ fn scale_rates(jod: [f64; 3], n: usize, repeats: u64, runs: u64) -> [f64; 3] {
 #[test]
 fn intervals_of_a_scale_cover() {
     let (mut sum, mut cells) = (0.0, 0.0);
-    for (jod, n, repeats) in
-        [([0.0, 0.0, 1.0], 6, 2), ([0.0, 0.5, 1.0], 12, 1), ([0.0, 0.0, 2.0], 12, 2), ([0.0, 0.0, 0.8], 24, 1)]
-    {
+    for (jod, n, repeats) in [
+        ([0.0, 0.0, 1.0], 6, 2),
+        ([0.0, 0.5, 1.0], 12, 1),
+        ([0.0, 0.0, 2.0], 12, 2),
+        ([0.0, 0.0, 0.8], 24, 1),
+    ] {
         let [coverage, alarms, without] = scale_rates(jod, n, repeats, 400);
         let least = if n < 12 { 0.88 } else { 0.92 };
         assert!(coverage >= least, "{jod:?}, n = {n}: {coverage}");
-        assert!(alarms <= 0.05 + 4.0 * (0.05f64 * 0.95 / 400.0).sqrt(), "{jod:?}, n = {n}: {alarms} false alarms");
+        assert!(
+            alarms <= 0.05 + 4.0 * (0.05f64 * 0.95 / 400.0).sqrt(),
+            "{jod:?}, n = {n}: {alarms} false alarms"
+        );
         assert!(without < 0.2, "{jod:?}, n = {n}: {without} have no interval");
         (sum, cells) = (sum + coverage, cells + 1.0);
     }
@@ -235,7 +266,8 @@ fn a_resampled_threshold_is_searched_as_widely_as_everybodys() {
     let (mut thresholds, mut at_bound) = (Vec::new(), 0);
     for replicate in 0..replicates as u64 {
         let mut random = Random::stream(seed, replicate);
-        let drawn: Vec<Level> = (0..people.len()).flat_map(|_| people[random.below(people.len())].clone()).collect();
+        let drawn: Vec<Level> =
+            (0..people.len()).flat_map(|_| people[random.below(people.len())].clone()).collect();
         let fitted = fit(&drawn, &task).unwrap();
         let edge = fitted.at_bound.iter().any(|name| name == "threshold" || name == "width");
         at_bound += usize::from(edge || fitted.standard_errors[0].is_none());
@@ -245,13 +277,17 @@ fn a_resampled_threshold_is_searched_as_widely_as_everybodys() {
     let (low, high) = (thresholds[50], thresholds[1949]);
     let width = high - low;
     let ours = found.bootstrap.high - found.bootstrap.low;
-    assert!((ours / width - 1.0).abs() < 0.1, "{} to {} is not {low} to {high}", found.bootstrap.low, found.bootstrap.high);
+    assert!(
+        (ours / width - 1.0).abs() < 0.1,
+        "{} to {} is not {low} to {high}",
+        found.bootstrap.low,
+        found.bootstrap.high
+    );
     let flagged = found.at_bound as f64 / at_bound as f64;
     assert!(at_bound > 100 && (0.8..1.25).contains(&flagged), "{} and {at_bound} at a bound", found.at_bound);
     // Control: many answers show the whole curve, and nothing ends on an edge.
     let shares = [52, 60, 75, 90, 98];
     let level = |person: u64, k: usize| Level { x: k as f64, correct: shares[k] - person % 3, trials: 100 };
-    let plenty: Vec<Vec<Level>> =
-        (0..10).map(|person| (0..5).map(|k| level(person, k)).collect()).collect();
+    let plenty: Vec<Vec<Level>> = (0..10).map(|person| (0..5).map(|k| level(person, k)).collect()).collect();
     assert_eq!(resampled_threshold(&plenty, &task, replicates, 0.95, seed).unwrap().at_bound, 0);
 }

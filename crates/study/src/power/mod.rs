@@ -123,7 +123,7 @@ pub fn power(design: &Design, threads: usize, watch: Watch<'_>) -> Power {
         line.advance(|total, added| watch(added, &|| total.power(design, &claims, added)));
     };
     std::thread::scope(|scope| {
-        (1..threads).for_each(|_| drop(scope.spawn(&work)));
+        (1..threads).for_each(|_| drop(scope.spawn(work)));
         work();
     });
     let line = line.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -149,9 +149,13 @@ impl ChoiceAnalysis {
                 keep("detectable effect", detectable_effect_t(test.n, ALPHA, DETECTION_POWER), &mut notes);
             if test.p >= ALPHA && equivalence.is_none_or(|e| e.tests.p >= ALPHA) {
                 let line = match equivalence {
-                    Some(_) => "A difference that is not significant is not shown to be absent: see the test of equivalence and the Bayes factor.",
-                    None => "A difference that is not significant is not shown to be absent: see the Bayes factor. The study file states no bound \
-                             within which a share would count as equivalent to a half.",
+                    Some(_) => {
+                        "A difference that is not significant is not shown to be absent: see the test of equivalence and the Bayes factor."
+                    }
+                    None => {
+                        "A difference that is not significant is not shown to be absent: see the Bayes factor. The study file states no bound \
+                             within which a share would count as equivalent to a half."
+                    }
                 };
                 notes.push(line.to_owned());
             }

@@ -133,12 +133,19 @@ fn tests(text: &mut Text, study: &StudyDefinition, report: &Report) {
     } else {
         String::new()
     };
-    let unplanned: Vec<String> =
-        report.blocks.iter().filter(|b| !b.planned && b.summary.p.is_some()).map(|b| b.summary.title.clone()).collect();
+    let unplanned: Vec<String> = report
+        .blocks
+        .iter()
+        .filter(|b| !b.planned && b.summary.p.is_some())
+        .map(|b| b.summary.title.clone())
+        .collect();
     let holm = if unplanned.is_empty() {
         holm
     } else {
-        format!("{holm} The study file plans no such test of {}; it is given uncorrected, and nothing is concluded from it.", unplanned.join(", "))
+        format!(
+            "{holm} The study file plans no such test of {}; it is given uncorrected, and nothing is concluded from it.",
+            unplanned.join(", ")
+        )
     };
     text.say(
         format!(
@@ -188,7 +195,9 @@ fn proportions(text: &mut Text, report: &Report) {
         });
         all.flatten().filter_map(|share| share.by_participant.map(|found| found.method))
     };
-    let mut said = "Intervals of shares are over participants, because choices of one participant are not independent.".to_owned();
+    let mut said =
+        "Intervals of shares are over participants, because choices of one participant are not independent."
+            .to_owned();
     let mut references = Vec::new();
     if shares().any(|method| method == ShareMethod::Wilson) {
         said.push_str(" Where each made one choice they are Wilson's.");

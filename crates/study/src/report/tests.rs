@@ -103,7 +103,8 @@ fn holm_counts_every_planned_test_and_no_other() {
     assert!(report.methods.join(" ").contains("for the 2 planned tests"), "{:?}", report.methods);
     // A block with a psychometric function plans no t-test, unless its file says so.
     let levels = |t_test: &str| {
-        let items: Vec<String> = (1..=3).map(|i| format!("{{ id = \"c{i}\", scene = \"a.toml\", level = {i} }}")).collect();
+        let items: Vec<String> =
+            (1..=3).map(|i| format!("{{ id = \"c{i}\", scene = \"a.toml\", level = {i} }}")).collect();
         let block = format!(
             "items = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n{t_test}",
             items.join(", ")
@@ -132,7 +133,10 @@ fn a_bound_of_equivalence_is_stated_with_its_reason() {
     // Two items: a tenth of the share is a fifth of a choice.
     assert!((found.within - 0.1).abs() < 1e-15 && (found.tests.half_width - 0.2).abs() < 1e-15, "{found:?}");
     let methods = report.methods.join(" ");
-    assert!(methods.contains("±0.1 on the share") && methods.contains("A tenth is what we would act on."), "{methods}");
+    assert!(
+        methods.contains("±0.1 on the share") && methods.contains("A tenth is what we would act on."),
+        "{methods}"
+    );
     let silent = Report::of(&self::study(), &answers(16, by_bits).participants());
     assert!(silent.blocks.iter().all(|b| b.analysis.equivalence.is_none()), "no bound is assumed");
     assert!(!self::study().to_json().contains("equivalence"), "what is left out changes no hash");
@@ -152,7 +156,7 @@ fn a_bound_of_equivalence_is_stated_with_its_reason() {
 fn a_scale_says_what_its_choices_are_of() {
     let report = Report::of(&study(), &answers(16, by_bits).participants());
     assert!(report.scale_pools.contains("2 blocks together: pairs of 3 stills;"), "{}", report.scale_pools);
-    let films = text().replace("title = \"Photos\"\n", "title = \"Photos\"\n").replacen("kind = \"still\"", "kind = \"animation\"", 1);
+    let films = text().replacen("kind = \"still\"", "kind = \"animation\"", 1);
     let pools = Report::of(&StudyDefinition::parse("s.toml", &films).unwrap(), &[]).scale_pools;
     assert!(pools.contains("1 still and 2 animations"), "{pools}");
 }

@@ -102,8 +102,14 @@ impl<'a> Judged<'a> {
                         None
                     } else {
                         // Whoever goes on has not failed to finish.
-                        reasons.retain(|reason| !(visit.is_active && matches!(reason, Exclusion::Incomplete { .. })));
-                        Some(if reasons.is_empty() { LeftOut::InProgress } else { LeftOut::Excluded(reasons) })
+                        reasons.retain(|reason| {
+                            !(visit.is_active && matches!(reason, Exclusion::Incomplete { .. }))
+                        });
+                        Some(if reasons.is_empty() {
+                            LeftOut::InProgress
+                        } else {
+                            LeftOut::Excluded(reasons)
+                        })
                     }
                 }
             };

@@ -50,12 +50,16 @@ fn design(study: &StudyDefinition) -> String {
 fn sizes(study: &StudyDefinition) -> String {
     let which = match (study.sizes(), study.fit()) {
         (_, Fit::Fill) => "resampled to fill a participant's window",
-        ([_], Fit::Integer) => "enlarged by whole multiples where a participant's window had room and scaled down where it had too little",
+        ([_], Fit::Integer) => {
+            "enlarged by whole multiples where a participant's window had room and scaled down where it had too little"
+        }
         ([_], Fit::Native) => "scaled down where a participant's window had too little room",
         (_, Fit::Integer) => {
             "the largest that fitted a participant's window shown, or a whole multiple of it, and the smallest scaled down where none did"
         }
-        (_, Fit::Native) => "the largest that fitted a participant's window shown, and the smallest scaled down where none did",
+        (_, Fit::Native) => {
+            "the largest that fitted a participant's window shown, and the smallest scaled down where none did"
+        }
     };
     format!("{}, {which}", study.sizes_in_words())
 }
