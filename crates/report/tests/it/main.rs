@@ -161,6 +161,65 @@ fn the_headline_says_what_was_and_what_was_not_shown() {
     );
 }
 
+/// The report's text in one line.
+fn said(report: &StudyReport) -> String {
+    text(&Document::of(report)).split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn no_interval_of_a_share_has_a_width_of_nothing() {
+    // Everybody alike: .025^(1/32) = .891, of participants and not of choices; everybody in half: about a half.
+    let alike = said(&paper([[0, 0, 32], [0, 32, 0], [26, 7, 0]]).report());
+    assert!(alike.contains("in 100% of 64 choices (95% interval 89% to 100%)"), "{alike}");
+    assert!(alike.contains("in 50% of 64 choices (95% interval 38% to 62%)"), "{alike}");
+    assert!(!alike.contains("100% to 100%") && !alike.contains("50% to 50%"), "{alike}");
+    assert!(alike.contains("No robust logit: the cluster-robust interval has no solution"), "{alike}");
+}
+
+#[test]
+fn the_scales_sentence_counts_what_the_table_holds() {
+    for (circular, straight) in [(6, 14), (0, 5), (0, 20)] {
+        let report = triangle(circular, straight).report();
+        let scale = report.report.scale.as_ref().unwrap();
+        let mut order: Vec<_> = scale.conditions.iter().collect();
+        order.sort_by(|a, b| b.jod.total_cmp(&a.jod));
+        let sure = scale.differences.iter().filter(|d| d.p_holm < 0.05).count();
+        let plain = said(&report);
+        assert!(
+            plain.contains(&format!("from the highest place to the lowest: {} (", order[0].condition)),
+            "{plain}"
+        );
+        assert!(
+            plain.contains(&format!("{sure} of 3 differences have p < 0.05 after Holm's correction")),
+            "{plain}"
+        );
+        assert!(
+            plain.contains("The scale takes the choices of 3 blocks together: pairs of 3 stills;"),
+            "{plain}"
+        );
+        // Five who agree have a sign test's p of 2/2⁵; twenty, a bound from the patterns that were tried.
+        assert_eq!(plain.contains("0.0625"), straight == 5, "{plain}");
+        assert_eq!(plain.contains("≤ 0.0001"), circular + straight == 20, "{plain}");
+        // Who all agree give no interval, with the reason.
+        let intervals = scale.differences.iter().filter(|d| d.low.is_some()).count();
+        assert_eq!((intervals > 0, scale.note.is_some()), (circular > 0, true), "{scale:?}");
+        assert!(plain.contains("they chose alike, which tells their number"), "{plain}");
+    }
+}
+
+#[test]
+fn an_end_beyond_every_level_is_said_and_the_other_printed() {
+    let mut report = levels().report();
+    let fit = report.report.blocks[0].psychometric.as_mut().unwrap().fit.as_mut().unwrap();
+    (fit.at[0].low, fit.at[0].high) = (Some(3.069283499483749), None);
+    let page = html(&Document::of(&report));
+    assert!(page.contains(">3.0693 to beyond<"), "{page}");
+    assert!(page.contains("its upper end is beyond every level"), "{page}");
+    let table = csv(&report);
+    let row = table.lines().find(|line| line.contains("level at a share of")).unwrap();
+    assert!(row.contains(",3.069283499483749,,0.95,"), "{row}");
+}
+
 #[test]
 fn figures_show_the_numbers_of_the_tables() {
     let report = paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report();

@@ -153,6 +153,25 @@ fn a_bound_of_equivalence_is_stated_with_its_reason() {
 }
 
 #[test]
+fn sides_are_participants_and_opposite_leanings_do_not_cancel() {
+    // Thirteen always choose the left picture and seven the right: of twenty people, not of forty trials.
+    let mut answers = Answers::new(&study());
+    for i in 0..20 {
+        for (k, (item_id, other)) in PAIRS.into_iter().enumerate() {
+            let session_id = &format!("p{i:02}");
+            answers.push(Row::choice(session_id, k as u32, item_id, ["pa", other], i < 13, 900.0));
+        }
+    }
+    let report = Report::of(&study(), &answers.participants());
+    let first = report.blocks[0].first.as_ref().unwrap();
+    let interval = first.interval().unwrap();
+    // statsmodels 0.14: proportion_confint(13, 20, method = "wilson").
+    assert_eq!((first.chosen, first.trials, first.participants), (26, 40, 20));
+    assert!((interval.low - 0.4329).abs() < 5e-5 && (interval.high - 0.8188).abs() < 5e-5, "{interval:?}");
+    assert!((report.blocks[0].first_intraclass.as_ref().unwrap().icc - 1.0).abs() < 1e-12);
+}
+
+#[test]
 fn a_scale_says_what_its_choices_are_of() {
     let report = Report::of(&study(), &answers(16, by_bits).participants());
     assert!(report.scale_pools.contains("2 blocks together: pairs of 3 stills;"), "{}", report.scale_pools);
