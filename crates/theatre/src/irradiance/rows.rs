@@ -1,35 +1,30 @@
 //! E⁰ along whole rows of pixels, and over all of them.
 
 use glam::{DVec2, DVec3};
-use kelir_frame::{View, multiversion};
-use kelir_scene::{Ambient, EmitterShape, Screen, Theatre};
+use kelir_frame::multiversion;
+use kelir_scene::{EmitterShape, Screen};
 use rayon::prelude::*;
 
 use super::{order, rule, unit};
-use crate::project::pixel_m;
 
-/// [`unit`](fn@unit) for whole rows of pixel centres; relative error ≤ 2e-8, a third of an f32's rounding.
+/// [`unit`](fn@unit) at pixel centres; relative error ≤ 2e-8, a third of an f32's rounding.
 ///
 /// Along a row it is taken at every `stride`th column and interpolated by cubics, whose error is at most 9/16 s⁴ max|f⁗| / 4! for points s
 /// apart; Cauchy's estimate on a circle of half the distance R makes that 144 (s / R)⁴ of the value.
 #[derive(Clone, Debug)]
-pub struct UnitRows {
+pub(crate) struct UnitPixels {
     shape: EmitterShape,
     lamp_m: DVec3,
     screen: [f64; 2],
     size: [usize; 2],
-    /// The x of every column's pixel centre, or of every `stride`th, from one before the first to two behind the last.
-    columns: Vec<f64>,
-    pub(super) stride: usize,
+    stride: usize,
     /// Nodes on the emitter, metres, and their weights, where one rule serves every pixel.
     nodes: Option<Vec<(DVec2, f64)>>,
 }
 
-impl UnitRows {
+impl UnitPixels {
     /// For one emitter of a lamp at `lamp_m`; the rule is chosen for the nearest point of the screen.
-    pub fn new(shape: &EmitterShape, lamp_m: DVec3, screen: &Screen, size: [usize; 2]) -> Self {
-        let x = |i: f64| pixel_m(screen, size, i, 0.0).x;
-        let mut columns: Vec<f64> = (0..size[0]).map(|i| x(i as f64)).collect();
+    pub(crate) fn new(shape: &EmitterShape, lamp_m: DVec3, screen: &Screen, size: [usize; 2]) -> Self {
         let mut stride = 1;
         let screen = [screen.width_m, screen.height_m];
         let nodes = match *shape {
@@ -45,10 +40,6 @@ impl UnitRows {
                 if n.is_some() {
                     stride = [16, 8, 4, 2].into_iter().find(close).unwrap_or(1);
                 }
-                if stride > 1 {
-                    let points = size[0].div_ceil(stride) + 3;
-                    columns = (0..points).map(|k| x((k as f64 - 1.0) * stride as f64)).collect();
-                }
                 n.map(|n| {
                     let line = rule(n);
                     line.iter()
@@ -59,29 +50,90 @@ impl UnitRows {
             }
             EmitterShape::Disk { .. } => None,
         };
-        Self { shape: *shape, lamp_m, screen, size, columns, stride, nodes }
+        Self { shape: *shape, lamp_m, screen, size, stride, nodes }
+    }
+
+    /// Columns from one value that is computed to the next.
+    #[cfg(test)]
+    pub(super) fn stride(&self) -> usize {
+        self.stride
+    }
+
+    fn x(&self, i: f64) -> f64 {
+        ((i + 0.5) / self.size[0] as f64 - 0.5) * self.screen[0]
+    }
+
+    fn y(&self, j: usize) -> f64 {
+        (0.5 - (j as f64 + 0.5) / self.size[1] as f64) * self.screen[1]
+    }
+
+    /// The x of the `k`th column that is interpolated between: one lies before the first.
+    fn knot(&self, k: usize) -> f64 {
+        self.x((k as f64 - 1.0) * self.stride as f64)
+    }
+
+    /// The value of pixel (i, j), to the bit that of [`UnitRows`].
+    pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
+        let (x, y) = (self.x(i as f64), self.y(j));
+        let Some(nodes) = &self.nodes else { return unit(&self.shape, self.lamp_m, DVec2::new(x, y)) };
+        let add = |columns: &[f64], out: &mut [f64]| {
+            for (offset, weight) in nodes {
+                let node = self.lamp_m.truncate() + *offset;
+                add_node_generic(columns, node.x, (node.y - y).powi(2), self.lamp_m.z, *weight, out);
+            }
+        };
+        if self.stride == 1 {
+            let mut out = [0.0];
+            add(&[x], &mut out);
+            return out[0];
+        }
+        let mut c = [0.0; 4];
+        add(&[0, 1, 2, 3].map(|k| self.knot(i / self.stride + k)), &mut c);
+        let w = lagrange((i % self.stride) as f64 / self.stride as f64);
+        w[0] * c[0] + w[1] * c[1] + w[2] * c[2] + w[3] * c[3]
+    }
+}
+
+/// The same for whole rows.
+#[derive(Clone, Debug)]
+pub struct UnitRows {
+    pub(super) of: UnitPixels,
+    /// The x of every column's pixel centre, or of every `stride`th, from one before the first to two behind the last.
+    columns: Vec<f64>,
+}
+
+impl UnitRows {
+    /// For one emitter of a lamp at `lamp_m`.
+    pub fn new(shape: &EmitterShape, lamp_m: DVec3, screen: &Screen, size: [usize; 2]) -> Self {
+        let of = UnitPixels::new(shape, lamp_m, screen, size);
+        let columns = match of.stride {
+            1 => (0..size[0]).map(|i| of.x(i as f64)).collect(),
+            stride => (0..size[0].div_ceil(stride) + 3).map(|k| of.knot(k)).collect(),
+        };
+        Self { of, columns }
     }
 
     /// The values of row `j` into `out`, one a column.
     pub fn row(&self, j: usize, out: &mut [f64]) {
-        let y = (0.5 - (j as f64 + 0.5) / self.size[1] as f64) * self.screen[1];
-        match &self.nodes {
+        let of = &self.of;
+        let y = of.y(j);
+        match &of.nodes {
             Some(nodes) => {
                 let add = |out: &mut [f64]| {
                     out.fill(0.0);
                     for (offset, weight) in nodes {
-                        let node = self.lamp_m.truncate() + *offset;
-                        add_node(&self.columns, node.x, (node.y - y).powi(2), self.lamp_m.z, *weight, out);
+                        let node = of.lamp_m.truncate() + *offset;
+                        add_node(&self.columns, node.x, (node.y - y).powi(2), of.lamp_m.z, *weight, out);
                     }
                 };
-                if self.stride == 1 {
+                if of.stride == 1 {
                     return add(out);
                 }
                 let mut coarse = vec![0.0; self.columns.len()];
                 add(&mut coarse);
                 let weights: Vec<[f64; 4]> =
-                    (0..self.stride).map(|k| lagrange(k as f64 / self.stride as f64)).collect();
-                for (out, c) in out.chunks_mut(self.stride).zip(coarse.windows(4)) {
+                    (0..of.stride).map(|k| lagrange(k as f64 / of.stride as f64)).collect();
+                for (out, c) in out.chunks_mut(of.stride).zip(coarse.windows(4)) {
                     for (o, w) in out.iter_mut().zip(&weights) {
                         *o = w[0] * c[0] + w[1] * c[1] + w[2] * c[2] + w[3] * c[3];
                     }
@@ -90,7 +142,7 @@ impl UnitRows {
             None => out
                 .iter_mut()
                 .zip(&self.columns)
-                .for_each(|(o, x)| *o = unit(&self.shape, self.lamp_m, DVec2::new(*x, y))),
+                .for_each(|(o, x)| *o = unit(&of.shape, of.lamp_m, DVec2::new(*x, y))),
         }
     }
 }
@@ -143,31 +195,4 @@ pub(super) fn means_over_pixels(image: &[f64], [width, height]: [usize; 2]) -> V
         }
     });
     out
-}
-
-/// The brightest unshadowed irradiance over pixels and channels.
-pub fn brightest(theatre: &Theatre, view: &View) -> f64 {
-    let lamp = &theatre.lamp;
-    let units: Vec<_> = lamp
-        .emitters
-        .iter()
-        .map(|e| (e.radiance, UnitRows::new(&e.shape, lamp.position_m, &theatre.screen, view.size)))
-        .collect();
-    let dome = match theatre.ambient {
-        Ambient::Dome { radiance } => radiance.map(|l| l * std::f64::consts::PI),
-        _ => [0.0; 3],
-    };
-    let mut unit = vec![0.0; view.size[0]];
-    let mut most = 0f64;
-    for j in 0..view.size[1] {
-        let mut sums = vec![dome; view.size[0]];
-        for (radiance, rows) in &units {
-            rows.row(j, &mut unit);
-            for (sum, unit) in sums.iter_mut().zip(&unit) {
-                (0..3).for_each(|c| sum[c] += radiance[c] * unit);
-            }
-        }
-        most = sums.iter().flatten().copied().fold(most, f64::max);
-    }
-    most
 }

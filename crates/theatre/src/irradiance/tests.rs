@@ -42,8 +42,10 @@ fn rows_keep_their_bound() {
         let (shape, lamp) =
             (EmitterShape::Rectangle { size_m: [side, 0.7 * side] }, DVec3::new(0.3, -0.1, z));
         let image = unit_image(&shape, lamp, &screen, size);
-        strides.push(UnitRows::new(&shape, lamp, &screen, size).stride);
+        strides.push(UnitRows::new(&shape, lamp, &screen, size).of.stride());
+        let pixels = UnitPixels::new(&shape, lamp, &screen, size);
         for (k, got) in image.iter().enumerate() {
+            assert_eq!(pixels.at(k % size[0], k / size[0]), *got, "to the bit");
             let p = pixel_m(&screen, size, (k % size[0]) as f64, (k / size[0]) as f64);
             let expected = unit(&shape, lamp, p);
             assert!((got / expected - 1.0).abs() <= 2e-8, "{side} {z}: {got:e}, not {expected:e}");
