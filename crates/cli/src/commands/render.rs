@@ -6,8 +6,9 @@ use std::time::Instant;
 use anyhow::Result;
 use kelir_render::encode::{self, Attributes};
 use kelir_render::exposure::Rule;
+use kelir_render::file::Pending;
 use kelir_render::job::{self, Drawn, Output};
-use kelir_render::{Frame, Meter, RenderError, Stats, file};
+use kelir_render::{Frame, Meter, RenderError, Stats};
 use serde::Serialize;
 
 use super::drawing::{Drawing, ExposureName, Told, render_error};
@@ -39,22 +40,25 @@ enum Container {
 
 /// Runs the command.
 pub(crate) fn run(args: Args) -> Result<()> {
-    let container = match args.output.extension().and_then(|end| end.to_str()) {
-        Some("png") => Container::Png,
-        Some("exr") => Container::Exr,
-        _ => {
-            return Err(bad_input(format!(
-                "output = {}: the name ends in .png or .exr",
-                args.output.display()
-            )));
-        }
-    };
+    let container =
+        match args.output.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("png") => Container::Png,
+            Some("exr") => Container::Exr,
+            _ => {
+                return Err(bad_input(format!(
+                    "output = {}: the name ends in .png or .exr",
+                    args.output.display()
+                )));
+            }
+        };
     let mut job = args.drawing.job(Output::Still, args.exposure, args.time)?;
     let (technique, size, exposure) = (job.technique.clone(), job.view.size, job.exposure);
     let scene_sha256 = job.scene.sha256().to_owned();
 
     let begun = Instant::now();
-    let mut drawing = job::Drawing::open(&mut job).map_err(render_error)?;
+    let file = Pending::begin(&args.output)?;
+    let mut drawing = progress::watch(&Meter::default(), "exposure", || job::Drawing::open(&mut job))
+        .map_err(render_error)?;
     let white = drawing.white();
     let attributes = Attributes {
         white,
@@ -67,7 +71,7 @@ pub(crate) fn run(args: Args) -> Result<()> {
     let (bytes, stats, linear) =
         progress::watch(&meter, technique.name(), || draw(&mut drawing, &container, &attributes))
             .map_err(render_error)?;
-    file::write_atomic(&args.output, &bytes)?;
+    file.finish(&bytes)?;
 
     let standard_error = linear.and_then(|frame| StandardError::of(&frame, white));
     if let Some(error) = &standard_error {
