@@ -13,7 +13,7 @@ use kelir_frame::View;
 use kelir_scene::{Ambient, Exposure, Theatre};
 
 use crate::albedo::{self, PixelAlbedo};
-use crate::irradiance::UnitPixels;
+use crate::irradiance::UnitRows;
 use peaks::Peaks;
 
 /// White for these instants of one scene (a still, or every frame of a timeline): the written radiance, or the brightest unshadowed
@@ -42,7 +42,7 @@ pub fn brightest(theatre: &Theatre, view: &View) -> f64 {
 
 /// The light of one instant without puppets.
 struct Light {
-    emitters: Vec<([f64; 3], UnitPixels)>,
+    emitters: Vec<([f64; 3], UnitRows)>,
     /// π times its radiance everywhere, as the stage is empty.
     dome: [f64; 3],
     /// Column and row of the foot of the lamp.
@@ -53,7 +53,7 @@ struct Light {
 impl Light {
     fn new(theatre: &Theatre, view: &View) -> Self {
         let (lamp, screen) = (&theatre.lamp, &theatre.screen);
-        let pixels = |shape| UnitPixels::new(shape, lamp.position_m, screen, view.size);
+        let rows = |shape| UnitRows::new(shape, lamp.position_m, screen, view.size);
         let [w, h] = view.size.map(|side| side as f64);
         let foot = [
             (lamp.position_m.x / screen.width_m + 0.5) * w - 0.5,
@@ -63,7 +63,7 @@ impl Light {
             Ambient::Dome { radiance } => radiance.map(|l| l * PI),
             _ => [0.0; 3],
         };
-        let emitters = lamp.emitters.iter().map(|e| (e.radiance, pixels(&e.shape))).collect();
+        let emitters = lamp.emitters.iter().map(|e| (e.radiance, rows(&e.shape))).collect();
         Self { emitters, dome, foot, size: view.size }
     }
 
@@ -75,9 +75,10 @@ impl Light {
             self.foot[axis].round().clamp(first as f64, last as f64) as usize
         };
         let mut sums = [0.0; 3];
-        for (radiance, pixels) in &self.emitters {
-            let unit = pixels.at(nearest(0), nearest(1));
-            sums.iter_mut().zip(radiance).for_each(|(sum, radiance)| *sum += radiance * unit);
+        let mut unit = [0.0];
+        for (radiance, rows) in &self.emitters {
+            rows.span(nearest(1), nearest(0), &mut unit);
+            sums.iter_mut().zip(radiance).for_each(|(sum, radiance)| *sum += radiance * unit[0]);
         }
         [0, 1, 2].map(|c| sums[c] + self.dome[c])
     }
@@ -149,7 +150,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::irradiance::UnitRows;
     use crate::pa;
     use kelir_frame::{Backend, Pixel};
 

@@ -6,25 +6,32 @@ use kelir_scene::{EmitterShape, Screen};
 use rayon::prelude::*;
 
 use super::{order, rule, unit};
+use crate::project::pixel_m;
 
-/// [`unit`](fn@unit) at pixel centres; relative error ≤ 2e-8, a third of an f32's rounding.
+/// [`unit`](fn@unit) for whole rows of pixel centres; relative error ≤ 2e-8, a third of an f32's rounding.
 ///
 /// Along a row it is taken at every `stride`th column and interpolated by cubics, whose error is at most 9/16 s⁴ max|f⁗| / 4! for points s
 /// apart; Cauchy's estimate on a circle of half the distance R makes that 144 (s / R)⁴ of the value.
 #[derive(Clone, Debug)]
-pub(crate) struct UnitPixels {
+pub struct UnitRows {
     shape: EmitterShape,
     lamp_m: DVec3,
     screen: [f64; 2],
     size: [usize; 2],
-    stride: usize,
+    /// The x of every column's pixel centre, or of every `stride`th, from one before the first to two behind the last.
+    columns: Vec<f64>,
+    pub(super) stride: usize,
+    /// Weights of the four points around a column, one row a point, for the columns from one point to the next.
+    taps: [Vec<f64>; 4],
     /// Nodes on the emitter, metres, and their weights, where one rule serves every pixel.
     nodes: Option<Vec<(DVec2, f64)>>,
 }
 
-impl UnitPixels {
+impl UnitRows {
     /// For one emitter of a lamp at `lamp_m`; the rule is chosen for the nearest point of the screen.
-    pub(crate) fn new(shape: &EmitterShape, lamp_m: DVec3, screen: &Screen, size: [usize; 2]) -> Self {
+    pub fn new(shape: &EmitterShape, lamp_m: DVec3, screen: &Screen, size: [usize; 2]) -> Self {
+        let x = |i: f64| pixel_m(screen, size, i, 0.0).x;
+        let mut columns: Vec<f64> = (0..size[0]).map(|i| x(i as f64)).collect();
         let mut stride = 1;
         let screen = [screen.width_m, screen.height_m];
         let nodes = match *shape {
@@ -40,6 +47,10 @@ impl UnitPixels {
                 if n.is_some() {
                     stride = [16, 8, 4, 2].into_iter().find(close).unwrap_or(1);
                 }
+                if stride > 1 {
+                    let points = size[0].div_ceil(stride) + 3;
+                    columns = (0..points).map(|k| x((k as f64 - 1.0) * stride as f64)).collect();
+                }
                 n.map(|n| {
                     let line = rule(n);
                     line.iter()
@@ -50,100 +61,38 @@ impl UnitPixels {
             }
             EmitterShape::Disk { .. } => None,
         };
-        Self { shape: *shape, lamp_m, screen, size, stride, nodes }
-    }
-
-    /// Columns from one value that is computed to the next.
-    #[cfg(test)]
-    pub(super) fn stride(&self) -> usize {
-        self.stride
-    }
-
-    fn x(&self, i: f64) -> f64 {
-        ((i + 0.5) / self.size[0] as f64 - 0.5) * self.screen[0]
-    }
-
-    fn y(&self, j: usize) -> f64 {
-        (0.5 - (j as f64 + 0.5) / self.size[1] as f64) * self.screen[1]
-    }
-
-    /// The x of the `k`th column that is interpolated between: one lies before the first.
-    fn knot(&self, k: usize) -> f64 {
-        self.x((k as f64 - 1.0) * self.stride as f64)
-    }
-
-    /// The value of pixel (i, j), to the bit that of [`UnitRows`].
-    pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
-        let (x, y) = (self.x(i as f64), self.y(j));
-        let Some(nodes) = &self.nodes else { return unit(&self.shape, self.lamp_m, DVec2::new(x, y)) };
-        let add = |columns: &[f64], out: &mut [f64]| {
-            for (offset, weight) in nodes {
-                let node = self.lamp_m.truncate() + *offset;
-                add_node_generic(columns, node.x, (node.y - y).powi(2), self.lamp_m.z, *weight, out);
-            }
-        };
-        if self.stride == 1 {
-            let mut out = [0.0];
-            add(&[x], &mut out);
-            return out[0];
-        }
-        let mut c = [0.0; 4];
-        add(&[0, 1, 2, 3].map(|k| self.knot(i / self.stride + k)), &mut c);
-        let w = lagrange((i % self.stride) as f64 / self.stride as f64);
-        w[0] * c[0] + w[1] * c[1] + w[2] * c[2] + w[3] * c[3]
-    }
-}
-
-/// The same for whole rows.
-#[derive(Clone, Debug)]
-pub struct UnitRows {
-    pub(super) of: UnitPixels,
-    /// The x of every column's pixel centre, or of every `stride`th, from one before the first to two behind the last.
-    columns: Vec<f64>,
-}
-
-impl UnitRows {
-    /// For one emitter of a lamp at `lamp_m`.
-    pub fn new(shape: &EmitterShape, lamp_m: DVec3, screen: &Screen, size: [usize; 2]) -> Self {
-        let of = UnitPixels::new(shape, lamp_m, screen, size);
-        let columns = match of.stride {
-            1 => (0..size[0]).map(|i| of.x(i as f64)).collect(),
-            stride => (0..size[0].div_ceil(stride) + 3).map(|k| of.knot(k)).collect(),
-        };
-        Self { of, columns }
+        let weights: Vec<_> = (0..stride).map(|k| lagrange(k as f64 / stride as f64)).collect();
+        let taps = [0, 1, 2, 3].map(|p| weights.iter().map(|w| w[p]).collect());
+        Self { shape: *shape, lamp_m, screen, size, columns, stride, taps, nodes }
     }
 
     /// The values of row `j` into `out`, one a column.
     pub fn row(&self, j: usize, out: &mut [f64]) {
-        let of = &self.of;
-        let y = of.y(j);
-        match &of.nodes {
-            Some(nodes) => {
-                let add = |out: &mut [f64]| {
-                    out.fill(0.0);
-                    for (offset, weight) in nodes {
-                        let node = of.lamp_m.truncate() + *offset;
-                        add_node(&self.columns, node.x, (node.y - y).powi(2), of.lamp_m.z, *weight, out);
-                    }
-                };
-                if of.stride == 1 {
-                    return add(out);
-                }
-                let mut coarse = vec![0.0; self.columns.len()];
-                add(&mut coarse);
-                let weights: Vec<[f64; 4]> =
-                    (0..of.stride).map(|k| lagrange(k as f64 / of.stride as f64)).collect();
-                for (out, c) in out.chunks_mut(of.stride).zip(coarse.windows(4)) {
-                    for (o, w) in out.iter_mut().zip(&weights) {
-                        *o = w[0] * c[0] + w[1] * c[1] + w[2] * c[2] + w[3] * c[3];
-                    }
-                }
+        self.span(j, 0, out);
+    }
+
+    /// Those of the columns from `first` on.
+    pub fn span(&self, j: usize, first: usize, out: &mut [f64]) {
+        let y = (0.5 - (j as f64 + 0.5) / self.size[1] as f64) * self.screen[1];
+        let Some(nodes) = &self.nodes else {
+            let columns = out.iter_mut().zip(&self.columns[first..]);
+            return columns.for_each(|(o, x)| *o = unit(&self.shape, self.lamp_m, DVec2::new(*x, y)));
+        };
+        let add = |columns: &[f64], out: &mut [f64]| {
+            out.fill(0.0);
+            for (offset, weight) in nodes {
+                let node = self.lamp_m.truncate() + *offset;
+                add_node(columns, node.x, (node.y - y).powi(2), self.lamp_m.z, *weight, out);
             }
-            None => out
-                .iter_mut()
-                .zip(&self.columns)
-                .for_each(|(o, x)| *o = unit(&of.shape, of.lamp_m, DVec2::new(*x, y))),
+        };
+        if self.stride == 1 {
+            return add(&self.columns[first..][..out.len()], out);
         }
+        let points = first / self.stride..(first + out.len()).div_ceil(self.stride) + 3;
+        let mut coarse = vec![0.0; points.len()];
+        add(&self.columns[points], &mut coarse);
+        let [before, from, to, after] = &self.taps;
+        interpolate(&coarse, first % self.stride, [before, from, to, after], out);
     }
 }
 
@@ -152,6 +101,21 @@ fn lagrange(t: f64) -> [f64; 4] {
     let (a, b, c, d) = (t + 1.0, t, t - 1.0, t - 2.0);
     [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0]
 }
+
+#[inline(always)]
+fn interpolate_generic(coarse: &[f64], first: usize, taps: [&[f64]; 4], mut out: &mut [f64]) {
+    let mut from = first;
+    for c in coarse.windows(4) {
+        let n = (taps[0].len() - from).min(out.len());
+        let (here, rest) = out.split_at_mut(n);
+        let [w0, w1, w2, w3] = taps.map(|weights| &weights[from..from + n]);
+        for k in 0..n {
+            here[k] = w0[k] * c[0] + w1[k] * c[1] + w2[k] * c[2] + w3[k] * c[3];
+        }
+        (from, out) = (0, rest);
+    }
+}
+multiversion! { fn interpolate(coarse: &[f64], first: usize, taps: [&[f64]; 4], out: &mut [f64]) = interpolate_generic; }
 
 #[inline(always)]
 fn add_node_generic(columns: &[f64], x: f64, dy2: f64, h: f64, weight: f64, out: &mut [f64]) {

@@ -71,8 +71,8 @@ pub struct Windows {
     pub stop_before: Vec<f64>,
     /// Full width of the box in texels, > 0.
     pub width: f64,
-    /// Whether any eight neighbouring ends begin within sixteen texels.
-    pub near: bool,
+    /// How far apart, in texels, the first and the last of four and of eight neighbouring ends lie at most.
+    pub spans: [i32; 2],
 }
 
 impl Windows {
@@ -87,13 +87,16 @@ impl Windows {
             start_before: vec![0.0; reach * count],
             stop_before: vec![0.0; reach * count],
             width,
-            near: false,
+            spans: [0; 2],
         };
         let centres: Vec<f64> = (0..count).map(centre).collect();
         ends(&centres, -0.5 * width, pixel, size, &mut windows.start, &mut windows.start_before);
         ends(&centres, 0.5 * width, pixel, size, &mut windows.stop, &mut windows.stop_before);
-        let near = |ends: &[i32]| ends.windows(8).all(|e| e[7] - e[0] < 16);
-        windows.near = near(&windows.start) && near(&windows.stop);
+        let span = |n: usize| {
+            let of = |ends: &[i32]| ends.windows(n).map(|e| e[n - 1] - e[0]).max().unwrap_or(0);
+            of(&windows.start).max(of(&windows.stop))
+        };
+        windows.spans = [span(4), span(8)];
         windows
     }
 

@@ -1,14 +1,14 @@
 //! The screen without puppets: made once, kept while lamp, screen, size and pixel rule stay.
 
-use std::f64::consts::PI;
-
-use kelir_frame::encode::{Srgb, pack};
-use kelir_frame::{View, multiversion};
+use kelir_frame::View;
+use kelir_frame::encode::Srgb;
 use kelir_scene::{Albedo, Ambient, Emitter, Screen, Theatre};
 use rayon::prelude::*;
 
 use crate::albedo::{self, PixelAlbedo};
 use crate::irradiance::UnitRows;
+
+mod loops;
 
 /// The lit screen and how much of its light each emitter gives.
 #[derive(Debug)]
@@ -16,8 +16,8 @@ pub(super) struct Background {
     key: Key,
     /// The lit screen's radiance: three planes, or one where all three would be equal.
     pub lit: Vec<Vec<f32>>,
-    /// The albedo, kept where the dome needs it.
-    pub albedo: Option<PixelAlbedo>,
+    /// The screen's albedo.
+    albedo: PixelAlbedo,
     /// The last emitter that shines: its share of the light is what the others leave.
     pub rest: usize,
     /// Each emitter's share of the lit screen's light: one plane a channel, or one where all emitters have the same
@@ -34,38 +34,47 @@ enum Codes {
     Colour(Vec<u32>),
 }
 
-#[inline(always)]
-fn widen_generic(codes: &[u8], out: &mut [u32]) {
-    for (out, code) in out.iter_mut().zip(codes) {
-        *out = 0xff00_0000 | (u32::from(*code) * 0x01_0101);
-    }
-}
-multiversion! { fn widen(codes: &[u8], out: &mut [u32]) = widen_generic; }
-
+/// What a lit screen was made for.
 #[derive(Debug)]
 struct Key {
     screen: Screen,
     lamp_m: glam::DVec3,
     emitters: Vec<Emitter>,
     view: View,
+    dome: bool,
 }
 
 impl Key {
-    fn holds(&self, theatre: &Theatre, view: &View) -> bool {
-        let albedo = match (&self.screen.albedo, &theatre.screen.albedo) {
+    fn new(theatre: &Theatre, view: &View) -> Self {
+        Self {
+            screen: theatre.screen.clone(),
+            lamp_m: theatre.lamp.position_m,
+            emitters: theatre.lamp.emitters.clone(),
+            view: *view,
+            dome: matches!(theatre.ambient, Ambient::Dome { .. }),
+        }
+    }
+
+    /// Whether pixels see the same cloth.
+    fn same_cloth(&self, other: &Self) -> bool {
+        let albedo = match (&self.screen.albedo, &other.screen.albedo) {
             (Albedo::Uniform(a), Albedo::Uniform(b)) => a == b,
             (Albedo::Image(a), Albedo::Image(b)) => std::sync::Arc::ptr_eq(a, b),
             _ => false,
         };
+        albedo && self.view.size == other.view.size && self.view.pixel == other.view.pixel
+    }
+
+    /// Whether what was made for this one serves the other; a dome asks for its albedo.
+    fn serves(&self, other: &Self) -> bool {
         let same = |(a, b): (&Emitter, &Emitter)| a.shape == b.shape && a.radiance == b.radiance;
-        albedo
-            && self.screen.width_m == theatre.screen.width_m
-            && self.screen.height_m == theatre.screen.height_m
-            && self.lamp_m == theatre.lamp.position_m
-            && self.emitters.len() == theatre.lamp.emitters.len()
-            && self.emitters.iter().zip(&theatre.lamp.emitters).all(same)
-            && self.view.size == view.size
-            && self.view.pixel == view.pixel
+        self.same_cloth(other)
+            && self.screen.width_m == other.screen.width_m
+            && self.screen.height_m == other.screen.height_m
+            && self.lamp_m == other.lamp_m
+            && self.emitters.len() == other.emitters.len()
+            && self.emitters.iter().zip(&other.emitters).all(same)
+            && (self.dome || !other.dome)
     }
 }
 
@@ -89,29 +98,32 @@ struct Row<'a> {
 impl Background {
     /// Whether this one still serves.
     pub(super) fn serves(&self, theatre: &Theatre, view: &View) -> bool {
-        let dome = matches!(theatre.ambient, Ambient::Dome { .. });
-        self.key.holds(theatre, view) && (!dome || self.albedo.is_some())
+        self.key.serves(&Key::new(theatre, view))
     }
 
-    /// Draws the screen without puppets.
-    pub(super) fn new(theatre: &Theatre, view: &View) -> Self {
+    /// Draws the screen without puppets. Of the one before it takes the memory and, with `keep`, what holds still.
+    pub(super) fn new(theatre: &Theatre, view: &View, before: Option<Self>, keep: bool) -> Self {
         let emitters = &theatre.lamp.emitters;
-        let albedo = albedo::on_grid(&theatre.screen, view);
-        let lamp_m = theatre.lamp.position_m;
-        let units: Vec<_> =
-            emitters.iter().map(|e| UnitRows::new(&e.shape, lamp_m, &theatre.screen, view.size)).collect();
-        let grey = emitters.iter().all(|e| e.radiance[0] == e.radiance[1] && e.radiance[1] == e.radiance[2])
-            && match &albedo {
-                PixelAlbedo::Uniform([r, g, b]) => r == g && g == b,
-                PixelAlbedo::Image([r, g, b]) => r == g && g == b,
-            };
+        let key = Key::new(theatre, view);
+        let (kept, mut spare) = before.map(|b| b.into_parts(&key)).unwrap_or_default();
+        let albedo = kept.filter(|_| keep).unwrap_or_else(|| albedo::on_grid(&theatre.screen, view));
+        let units: Vec<_> = emitters
+            .iter()
+            .map(|e| UnitRows::new(&e.shape, key.lamp_m, &theatre.screen, view.size))
+            .collect();
+        let grey = albedo.is_grey()
+            && emitters.iter().all(|e| e.radiance[0] == e.radiance[1] && e.radiance[1] == e.radiance[2]);
         // One colour: any channel in which something shines carries all shares.
         let bright = (0..3).find(|c| emitters.iter().any(|e| e.radiance[*c] > 0.0)).unwrap_or(0);
         let share_channels: &[usize] = if one_colour(emitters) { &[bright] } else { &[0, 1, 2] };
         let rest = emitters.iter().rposition(|e| e.radiance != [0.0; 3]).unwrap_or(emitters.len() - 1);
         let [w, h] = view.size;
-        let plane = || vec![0f32; w * h];
-        let mut lit: Vec<_> = (0..if grey { 1 } else { 3 }).map(|_| plane()).collect();
+        let mut plane = || {
+            let spare = spare.pop().filter(|plane: &Vec<f32>| plane.len() == w * h);
+            spare.unwrap_or_else(|| vec![0f32; w * h])
+        };
+        let channels = if grey { 1 } else { 3 };
+        let mut lit: Vec<_> = (0..channels).map(|_| plane()).collect();
         let mut share: Vec<Vec<_>> = (0..emitters.len())
             .map(|e| share_channels.iter().filter(|_| e != rest).map(|_| plane()).collect())
             .collect();
@@ -124,30 +136,41 @@ impl Background {
         }
         let draw = |(unit, total): &mut (Vec<f64>, Vec<f64>), (j, mut row): (usize, Row)| {
             unit.resize(emitters.len() * w, 0.0);
-            total.resize(3 * w, 0.0);
+            total.resize(channels * w, 0.0);
             total.fill(0.0);
             for ((unit, rows), emitter) in unit.chunks_mut(w).zip(&units).zip(emitters) {
                 rows.row(j, unit);
                 for (total, radiance) in total.chunks_mut(w).zip(emitter.radiance) {
-                    total.iter_mut().zip(unit.iter()).for_each(|(t, u)| *t += radiance * u);
+                    loops::add(total, radiance, unit);
                 }
             }
+            let total = |c: usize| &total[c.min(channels - 1) * w..][..w];
             for (c, lit) in row.lit.iter_mut().enumerate() {
-                for (i, (lit, e)) in lit.iter_mut().zip(&total[c * w..]).enumerate() {
-                    *lit = (f64::from(albedo.at(c, j * w + i)) * e / PI) as f32;
+                match &albedo {
+                    PixelAlbedo::Uniform(a) => loops::reflect(lit, &vec![a[c]; w], total(c)),
+                    PixelAlbedo::Image(planes) => {
+                        let albedo = &planes[c.min(planes.len() - 1)];
+                        loops::reflect(lit, &albedo[j * w..][..w], total(c));
+                    }
                 }
             }
             for (e, c, share) in &mut row.share {
-                let (radiance, unit) = (emitters[*e].radiance[*c], &unit[*e * w..]);
-                for ((share, all), unit) in share.iter_mut().zip(&total[*c * w..]).zip(unit) {
-                    *share = if *all > 0.0 { (radiance * unit / all) as f32 } else { 0.0 };
-                }
+                loops::share(share, emitters[*e].radiance[*c], &unit[*e * w..][..w], total(*c));
             }
         };
         rows.into_par_iter().enumerate().for_each_init(Default::default, draw);
-        let key = Key { screen: theatre.screen.clone(), lamp_m, emitters: emitters.clone(), view: *view };
-        let albedo = matches!(theatre.ambient, Ambient::Dome { .. }).then_some(albedo);
         Self { key, lit, albedo, rest, share, encoded: None }
+    }
+
+    /// The albedo, where pixels see the cloth that they see in `key`, and planes whose memory may be used.
+    fn into_parts(self, key: &Key) -> (Option<PixelAlbedo>, Vec<Vec<f32>>) {
+        let planes = self.share.into_iter().flatten().chain(self.lit).collect();
+        (self.key.same_cloth(key).then_some(self.albedo), planes)
+    }
+
+    /// The albedo where the dome, whose light is added, asks for it.
+    pub(super) fn dome_albedo(&self) -> Option<&PixelAlbedo> {
+        self.key.dome.then_some(&self.albedo)
     }
 
     /// Radiance of channel `c`.
@@ -172,13 +195,19 @@ impl Background {
             return true;
         }
         let (srgb, scale) = (Srgb::get(), (1.0 / white) as f32);
-        let code = |lit: &f32| srgb.code(lit * scale);
-        let (r, g, b) = (self.lit(0).par_iter(), self.lit(1).par_iter(), self.lit(2).par_iter());
+        // Rows of a moderate size, for threads to share.
+        const PART: usize = 1 << 14;
+        let (n, part) = (self.lit(0).len(), |c: usize| self.lit(c).par_chunks(PART));
         let codes = if self.lit.len() == 1 {
-            Codes::Grey(r.with_min_len(4096).map(|r| code(r) as u8).collect())
+            let mut codes = vec![0; n];
+            let parts = codes.par_chunks_mut(PART).zip(part(0));
+            parts.for_each(|(out, lit)| loops::encode(srgb, lit, scale, out));
+            Codes::Grey(codes)
         } else {
-            let packed = |((r, g), b): ((&f32, &f32), &f32)| pack(code(r), code(g), code(b));
-            Codes::Colour(r.zip(g).zip(b).with_min_len(4096).map(packed).collect())
+            let mut codes = vec![0; n];
+            let parts = codes.par_chunks_mut(PART).zip(part(0)).zip(part(1)).zip(part(2));
+            parts.for_each(|(((out, r), g), b)| loops::encode_colour(srgb, [r, g, b], scale, out));
+            Codes::Colour(codes)
         };
         self.encoded = Some((white, codes));
         false
@@ -187,7 +216,7 @@ impl Background {
     /// Writes the lit screen's display codes of `pixels`; [`encode`](Self::encode) must have made them.
     pub(super) fn copy_lit(&self, pixels: std::ops::Range<usize>, out: &mut [u32]) {
         match &self.encoded {
-            Some((_, Codes::Grey(codes))) => widen(&codes[pixels], out),
+            Some((_, Codes::Grey(codes))) => loops::widen(&codes[pixels], out),
             Some((_, Codes::Colour(codes))) => out.copy_from_slice(&codes[pixels]),
             None => {}
         }

@@ -146,13 +146,16 @@ impl OnGpu {
         self.tables.prepare(theatre, &plan, keep, &mut stats);
         self.device_tables.prepare(&self.passes, theatre, &plan, keep)?;
         step(&mut stats, "tables");
-        if !skips.has(Skips::KEPT_SCREEN) {
-            self.background = None;
+        let keep = skips.has(Skips::KEPT_SCREEN);
+        if !keep {
             self.domes.clear();
         }
-        let kept = self.background.take().filter(|(b, _)| b.serves(theatre, view));
-        stats.counts.insert("background_reused".into(), u64::from(kept.is_some()));
-        let (mut background, screen) = kept.unwrap_or_else(|| (Background::new(theatre, view), None));
+        let reused = keep && self.background.as_ref().is_some_and(|(b, _)| b.serves(theatre, view));
+        stats.counts.insert("background_reused".into(), u64::from(reused));
+        let (mut background, screen) = match self.background.take() {
+            Some(kept) if reused => kept,
+            before => (Background::new(theatre, view, before.map(|(b, _)| b), keep), None),
+        };
         let screen = match screen {
             Some(screen) => screen,
             None => DeviceScreen::new(&self.passes.gpu, &background, view.size)?,

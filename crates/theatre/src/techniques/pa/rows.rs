@@ -6,6 +6,11 @@ use super::plan::Lookup;
 use super::table::{Sum, Sums, Table};
 use crate::project::window::Windows;
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+
 /// Entries behind the last that a vector load may touch.
 const SPARE: usize = 32;
 
@@ -13,6 +18,8 @@ const SPARE: usize = 32;
 #[derive(Debug, Default)]
 pub(crate) struct Combined {
     sums: Vec<u64>,
+    /// What each entry adds to the one before it, as [`look_up`] weighs it: converted once a texel, not once a window.
+    steps: Vec<f64>,
     strips: Vec<(usize, u32)>,
 }
 
@@ -45,6 +52,10 @@ impl Combined {
             let last = self.sums[margin + to];
             self.sums[margin + to + 1..].fill(last);
         }
+        self.steps.resize(self.sums.len(), 0.0);
+        let first = (lookup.x.start[columns.start] + margin as i32) as usize;
+        let last = (lookup.x.stop[columns.end - 1] + 2 * margin as i32) as usize;
+        steps(&self.sums[first..=last + 1], &mut self.steps[first..=last]);
     }
 
     /// Mean transmittances (1 − opacity) of windows `columns`, from what `combine` left for them, into `out` of the same length.
@@ -54,13 +65,13 @@ impl Combined {
         assert!(columns.end <= count && columns.len() == out.len(), "columns of the plan");
         let ends = (&x.start[columns.clone()], &x.stop[columns.clone()]);
         let weights = (&x.start_before[columns.start..], &x.stop_before[columns.start..]);
-        let sums = &self.sums[..];
+        let sums = (&self.sums[..], &self.steps[..]);
         match x.reach {
-            1 => look_up::<1>(sums, ends, weights, count, lookup.norm, x.near, out),
-            2 => look_up::<2>(sums, ends, weights, count, lookup.norm, x.near, out),
-            3 => look_up::<3>(sums, ends, weights, count, lookup.norm, x.near, out),
-            4 => look_up::<4>(sums, ends, weights, count, lookup.norm, x.near, out),
-            reach => look_up_any(sums, reach, ends, weights, count, lookup.norm, out),
+            1 => look_up::<1>(sums, ends, weights, count, lookup.norm, x.spans, out),
+            2 => look_up::<2>(sums, ends, weights, count, lookup.norm, x.spans, out),
+            3 => look_up::<3>(sums, ends, weights, count, lookup.norm, x.spans, out),
+            4 => look_up::<4>(sums, ends, weights, count, lookup.norm, x.spans, out),
+            reach => look_up_any(sums.0, reach, ends, weights, count, lookup.norm, out),
         }
     }
 }
@@ -159,8 +170,16 @@ multiversion! {
 }
 
 #[inline(always)]
+fn steps_generic(sums: &[u64], steps: &mut [f64]) {
+    for (step, pair) in steps.iter_mut().zip(sums.windows(2)) {
+        *step = pair[1].wrapping_sub(pair[0]) as f64;
+    }
+}
+multiversion! { fn steps(sums: &[u64], steps: &mut [f64]) = steps_generic; }
+
+#[inline(always)]
 fn look_up_generic<const K: usize>(
-    sums: &[u64],
+    (sums, steps): (&[u64], &[f64]),
     (start, stop): (&[i32], &[i32]),
     (start_before, stop_before): (&[f64], &[f64]),
     count: usize,
@@ -173,38 +192,43 @@ fn look_up_generic<const K: usize>(
     let stops: [&[f64]; K] = std::array::from_fn(|k| &stop_before[k * count..][..n]);
     for i in 0..n {
         let (a, b) = ((start[i] + K as i32) as usize, (stop[i] + K as i32) as usize);
-        debug_assert!(a + K < sums.len() && b + K < sums.len());
-        // SAFETY: `Windows` clamps both ends to [−K, width], and sums holds width + 2K + 2 entries from −K on.
-        let at = |i: usize| unsafe { *sums.get_unchecked(i) };
+        debug_assert!(a + K < steps.len() && b + K < steps.len());
+        // SAFETY: `Windows` clamps both ends to [−K, width]; sums and steps hold width + 2K + 2 entries from −K on.
+        let (at, step) =
+            (|i: usize| unsafe { *sums.get_unchecked(i) }, |i: usize| unsafe { *steps.get_unchecked(i) });
         let mut sum = at(b).wrapping_sub(at(a)) as f64;
         for k in 0..K {
-            sum += stops[k][i] * at(b + k + 1).wrapping_sub(at(b + k)) as f64;
-            sum -= starts[k][i] * at(a + k + 1).wrapping_sub(at(a + k)) as f64;
+            sum += stops[k][i] * step(b + k);
+            sum -= starts[k][i] * step(a + k);
         }
         out[i] = (1.0 - (sum * norm) as f32).clamp(0.0, 1.0);
     }
 }
 
-/// [`look_up_generic`] on the best instruction set. With AVX-512, where eight neighbouring ends lie `near` each other (pixels of
-/// less than two texels), two loads and a permutation stand for a gather; the arithmetic is the same to the bit.
+/// [`look_up_generic`] on the best instruction set. Where neighbouring ends lie near each other (`spans`: pixels of less than two texels
+/// with AVX-512, of one with AVX2), a permutation stands for a gather; the arithmetic is the same to the bit.
 fn look_up<const K: usize>(
-    sums: &[u64],
+    sums: (&[u64], &[f64]),
     ends: (&[i32], &[i32]),
     weights: (&[f64], &[f64]),
     count: usize,
     norm: f64,
-    near: bool,
+    spans: [i32; 2],
     out: &mut [f32],
 ) {
     #[cfg(target_arch = "x86_64")]
     {
         match Isa::detect() {
             // SAFETY: detected on this machine.
-            Isa::Avx512 if near => {
+            Isa::Avx512 if spans[1] < 16 => {
                 return unsafe { avx512::near::<K>(sums, ends, weights, count, norm, out) };
             }
             // SAFETY: detected on this machine.
             Isa::Avx512 => return unsafe { avx512::far::<K>(sums, ends, weights, count, norm, out) },
+            // SAFETY: detected on this machine.
+            Isa::Avx2 if spans[0] < 4 => {
+                return unsafe { avx2::near::<K>(sums, ends, weights, count, norm, out) };
+            }
             // SAFETY: detected on this machine.
             Isa::Avx2 => return unsafe { look_up_avx2::<K>(sums, ends, weights, count, norm, out) },
             Isa::Plain => {}
@@ -216,7 +240,7 @@ fn look_up<const K: usize>(
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn look_up_avx2<const K: usize>(
-    sums: &[u64],
+    sums: (&[u64], &[f64]),
     ends: (&[i32], &[i32]),
     weights: (&[f64], &[f64]),
     count: usize,
@@ -224,82 +248,6 @@ fn look_up_avx2<const K: usize>(
     out: &mut [f32],
 ) {
     look_up_generic::<K>(sums, ends, weights, count, norm, out);
-}
-
-#[cfg(target_arch = "x86_64")]
-mod avx512 {
-    use std::arch::x86_64::*;
-
-    use super::look_up_generic;
-
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-    pub(super) fn far<const K: usize>(
-        sums: &[u64],
-        ends: (&[i32], &[i32]),
-        weights: (&[f64], &[f64]),
-        count: usize,
-        norm: f64,
-        out: &mut [f32],
-    ) {
-        look_up_generic::<K>(sums, ends, weights, count, norm, out);
-    }
-
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
-    pub(super) fn near<const K: usize>(
-        sums: &[u64],
-        (start, stop): (&[i32], &[i32]),
-        (start_before, stop_before): (&[f64], &[f64]),
-        count: usize,
-        norm: f64,
-        out: &mut [f32],
-    ) {
-        let n = out.len();
-        let whole = n - n % 8;
-        if whole > 0 {
-            // Ends grow from column to column and start at −K.
-            let last = start[whole - 1].max(stop[whole - 1]) + 2 * K as i32;
-            assert!(start[0] >= -(K as i32) && stop[0] >= -(K as i32) && last as usize + 16 <= sums.len());
-            let planes = (K - 1) * count + whole;
-            assert!(planes <= start_before.len() && planes <= stop_before.len());
-        }
-        let (norm8, one, zero) = (_mm512_set1_pd(norm), _mm256_set1_ps(1.0), _mm256_setzero_ps());
-        for at in (0..whole).step_by(8) {
-            // SAFETY: the assertions above; eight ends from the first are less than sixteen entries away from it.
-            unsafe {
-                let load = |ends: &[i32]| {
-                    let first = *ends.get_unchecked(at);
-                    let all = _mm256_loadu_si256(ends.as_ptr().add(at).cast());
-                    let offsets = _mm512_cvtepi32_epi64(_mm256_sub_epi32(all, _mm256_set1_epi32(first)));
-                    (sums.as_ptr().offset((first + K as i32) as isize), offsets)
-                };
-                let entry = |p: *const u64, to: __m512i| {
-                    _mm512_permutex2var_epi64(
-                        _mm512_loadu_si512(p.cast()),
-                        to,
-                        _mm512_loadu_si512(p.add(8).cast()),
-                    )
-                };
-                let ((a, a_to), (b, b_to)) = (load(start), load(stop));
-                let (mut from, mut till) = (entry(a, a_to), entry(b, b_to));
-                let mut sum = _mm512_cvtepu64_pd(_mm512_sub_epi64(till, from));
-                for k in 0..K {
-                    let (next_from, next_till) = (entry(a.add(k + 1), a_to), entry(b.add(k + 1), b_to));
-                    let weight = |before: &[f64]| _mm512_loadu_pd(before.as_ptr().add(k * count + at));
-                    let part = _mm512_cvtepu64_pd(_mm512_sub_epi64(next_till, till));
-                    sum = _mm512_add_pd(sum, _mm512_mul_pd(weight(stop_before), part));
-                    let part = _mm512_cvtepu64_pd(_mm512_sub_epi64(next_from, from));
-                    sum = _mm512_sub_pd(sum, _mm512_mul_pd(weight(start_before), part));
-                    (from, till) = (next_from, next_till);
-                }
-                let opacity = _mm512_cvtpd_ps(_mm512_mul_pd(sum, norm8));
-                let through = _mm256_min_ps(_mm256_max_ps(_mm256_sub_ps(one, opacity), zero), one);
-                _mm256_storeu_ps(out.as_mut_ptr().add(at), through);
-            }
-        }
-        let ends = (&start[whole..n], &stop[whole..n]);
-        let weights = (&start_before[whole..], &stop_before[whole..]);
-        look_up_generic::<K>(sums, ends, weights, count, norm, &mut out[whole..]);
-    }
 }
 
 /// Pixels that cover many texels.
@@ -330,9 +278,15 @@ mod tests {
     /// What looks up without checks reads what the checked loop reads, on every instruction set, for windows that hang over both ends.
     #[test]
     fn unchecked_look_ups_are_the_checked_ones() {
-        for (reach, pixel, step) in
-            [(1, 0.0, 0.7), (2, 0.8, 1.3), (3, 1.9, 2.1), (4, 2.7, 9.5), (2, 0.4, 40.0)]
-        {
+        for (reach, pixel, step) in [
+            (1, 0.0, 0.7),
+            (2, 0.95, 0.95),
+            (3, 1.2, 0.8),
+            (2, 0.8, 1.3),
+            (3, 1.9, 2.1),
+            (4, 2.7, 9.5),
+            (2, 0.4, 40.0),
+        ] {
             let (count, size) = (203, 97);
             let x = Windows::new(count, |i| (i as f64 - 60.0) * step + 3.3, 5.7, size, pixel);
             assert_eq!(x.reach, reach);
@@ -344,6 +298,8 @@ mod tests {
                 })
                 .collect();
             let (ends, weights) = ((&x.start[..], &x.stop[..]), (&x.start_before[..], &x.stop_before[..]));
+            let mut steps_of = vec![0.0; sums.len() - 1];
+            steps(&sums, &mut steps_of);
             let norm = 1.0 / sums[sums.len() - 1] as f64;
             let mut checked = vec![0f32; count];
             look_up_any(&sums, reach, ends, weights, count, norm, &mut checked);
@@ -351,10 +307,10 @@ mod tests {
             for isa in Isa::all() {
                 let mut out = vec![0f32; count];
                 isa.with(|| match reach {
-                    1 => look_up::<1>(&sums, ends, weights, count, norm, x.near, &mut out),
-                    2 => look_up::<2>(&sums, ends, weights, count, norm, x.near, &mut out),
-                    3 => look_up::<3>(&sums, ends, weights, count, norm, x.near, &mut out),
-                    _ => look_up::<4>(&sums, ends, weights, count, norm, x.near, &mut out),
+                    1 => look_up::<1>((&sums, &steps_of), ends, weights, count, norm, x.spans, &mut out),
+                    2 => look_up::<2>((&sums, &steps_of), ends, weights, count, norm, x.spans, &mut out),
+                    3 => look_up::<3>((&sums, &steps_of), ends, weights, count, norm, x.spans, &mut out),
+                    _ => look_up::<4>((&sums, &steps_of), ends, weights, count, norm, x.spans, &mut out),
                 });
                 assert_eq!(out, checked, "{} texels a pixel, {}", pixel, isa.name());
             }

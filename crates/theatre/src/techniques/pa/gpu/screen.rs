@@ -21,11 +21,13 @@ impl DeviceScreen {
     /// Uploads `background`; errors where a texture can't be as large as the image.
     pub(super) fn new(gpu: &Gpu, background: &Background, size: [usize; 2]) -> Result<Self, RenderError> {
         let limits = gpu.device.limits();
-        let (image, uniform) = match &background.albedo {
+        let (image, uniform) = match background.dome_albedo() {
             Some(PixelAlbedo::Image(planes)) => (&planes[..], None),
             Some(PixelAlbedo::Uniform(albedo)) => (&[][..], Some(*albedo)),
             None => (&[][..], None),
         };
+        // The shader reads three channels of an image.
+        let image = (0..3).filter(|_| !image.is_empty()).map(|c| &image[c.min(image.len() - 1)]);
         let planes: Vec<&Vec<f32>> =
             background.lit.iter().chain(background.share.iter().flatten()).chain(image).collect();
         let layers = planes.len();

@@ -96,7 +96,7 @@ impl Job<'_> {
         let lit = |c: usize| &self.background.lit(c)[pixels.clone()];
         let mut added = [0, 1, 2].map(|_| Vec::new());
         if let Some(dome) = &self.dome {
-            let albedo = |c: usize, k: usize| self.background.albedo.as_ref().map_or(0.0, |a| a.at(c, k));
+            let albedo = |c: usize, k: usize| self.background.dome_albedo().map_or(0.0, |a| a.at(c, k));
             added = [0, 1, 2].map(|c| {
                 let at = |i: usize| pixel_m(&self.theatre.screen, self.view.size, i as f64, j as f64);
                 span.clone().map(|i| albedo(c, row + i) * dome.radiance(c, at(i))).collect()
