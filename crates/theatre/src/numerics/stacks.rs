@@ -48,8 +48,11 @@ impl StackRow {
     }
 }
 
+/// A renderer, or why there is none.
+type Opened = Result<Box<dyn Renderer<Theatre>>, RenderError>;
+
 /// What draws, and the share of what a stack lets through by which it may err.
-fn drawn_by(backend: Backend) -> Vec<(&'static str, f64, Result<Box<dyn Renderer<Theatre>>, RenderError>)> {
+fn drawn_by(backend: Backend) -> Vec<(&'static str, f64, Opened)> {
     let mc = mc::Knobs { spp: 64, ..mc::Knobs::default() };
     // Sixteen lights stand in four columns: half of one may be seen wrongly.
     let lights = points::Knobs { lights: 16, subpixels: 1 };
