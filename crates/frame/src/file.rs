@@ -14,33 +14,24 @@ const ABANDONED_FOLDER: Duration = Duration::from_secs(3600);
 /// Writes `bytes` beside `path` and renames: whoever is interrupted leaves no half-written file, at most `NAME.PROCESS.NUMBER.part`, which
 /// a later write of the same file removes. Missing folders are made.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
-    Pending::begin(path)?.finish(bytes)
+    let part = part_of(path)?;
+    let written = std::fs::write(&part.path, bytes).and_then(|()| std::fs::rename(&part.path, path));
+    written.map_err(|source| named(path, source))
 }
 
-/// A file that can be written, as its part beside it already is: what can't is told before anything is drawn. Dropped, it leaves nothing.
-#[derive(Debug)]
-pub struct Pending {
-    path: PathBuf,
-    part: Part,
+/// Tries whether a file can be written, and leaves nothing of it: what can't be is told before anything is drawn.
+///
+/// Errors: what the system says, and a folder in the file's place.
+pub fn try_writing(path: &Path) -> Result<(), RenderError> {
+    let part = part_of(path)?;
+    std::fs::File::create(&part.path).map(drop).map_err(|source| named(path, source))
 }
 
-impl Pending {
-    /// Makes the part, and missing folders. Errors: what the system says, and a folder in the file's place.
-    pub fn begin(path: &Path) -> Result<Self, RenderError> {
-        if path.is_dir() {
-            return Err(named(path, std::io::ErrorKind::IsADirectory.into()));
-        }
-        let part = Part::beside(path)?;
-        std::fs::File::create(&part.path).map_err(|source| named(path, source))?;
-        Ok(Self { path: path.to_owned(), part })
+fn part_of(path: &Path) -> Result<Part, RenderError> {
+    if path.is_dir() {
+        return Err(named(path, std::io::ErrorKind::IsADirectory.into()));
     }
-
-    /// Writes the file.
-    pub fn finish(self, bytes: &[u8]) -> Result<(), RenderError> {
-        let written = std::fs::write(&self.part.path, bytes)
-            .and_then(|()| std::fs::rename(&self.part.path, &self.path));
-        written.map_err(|source| named(&self.path, source))
-    }
+    Part::beside(path)
 }
 
 /// The error of a path.
@@ -159,12 +150,10 @@ mod tests {
         let taken = folder.path().join("taken");
         std::fs::write(&taken, b"").unwrap();
         for path in [taken.join("a.png"), folder.path().to_owned()] {
-            assert!(Pending::begin(&path).is_err(), "{}", path.display());
+            assert!(try_writing(&path).is_err(), "{}", path.display());
         }
-        // What is begun and given up leaves neither its part nor the folders that were made for it.
-        let pending = Pending::begin(&folder.path().join("new/newer/a.png")).unwrap();
-        assert!(folder.path().join("new/newer").is_dir());
-        drop(pending);
+        // A try leaves neither its part nor the folders that were made for it.
+        try_writing(&folder.path().join("new/newer/a.png")).unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }
