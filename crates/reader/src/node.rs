@@ -66,6 +66,11 @@ impl<'a> Node<'a> {
         None
     }
 
+    /// Says that this value may be a mistake, though nothing is wrong with it.
+    pub fn warn(&self, about: impl Into<String>) {
+        self.source.warn_at(self.span.as_ref(), self.path.clone(), self.shown(), about.into());
+    }
+
     /// Reports what is wrong with a value of this table without showing it, or with one that it lacks.
     pub fn report(&self, key: &str, rule: impl Into<String>) {
         let there = self.get(key);

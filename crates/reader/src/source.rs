@@ -15,6 +15,7 @@ use crate::words::shorten;
 #[derive(Debug, Default)]
 pub struct Reading {
     problems: RefCell<Vec<Problem>>,
+    warnings: RefCell<Vec<Problem>>,
     asked: Option<RefCell<Asked>>,
 }
 
@@ -32,6 +33,11 @@ impl Reading {
     /// Whether nothing was found wrong so far.
     pub fn is_sound(&self) -> bool {
         self.problems.borrow().is_empty()
+    }
+
+    /// What may be a mistake, though nothing is wrong with it; handed out once.
+    pub fn take_warnings(&self) -> Vec<Problem> {
+        self.warnings.take()
     }
 
     /// Every problem.
@@ -102,8 +108,28 @@ impl<'a> Source<'a> {
         value: Option<String>,
         rule: String,
     ) {
+        self.add(self.problem_at(span, field, value, rule));
+    }
+
+    pub(crate) fn warn_at(
+        &self,
+        span: Option<&Range<usize>>,
+        field: String,
+        value: Option<String>,
+        about: String,
+    ) {
+        self.reading.warnings.borrow_mut().push(self.problem_at(span, field, value, about));
+    }
+
+    fn problem_at(
+        &self,
+        span: Option<&Range<usize>>,
+        field: String,
+        value: Option<String>,
+        rule: String,
+    ) -> Problem {
         let place = span.map(|span| self.place(span.start));
-        self.add(Problem { place, ..self.problem(field, value, rule) });
+        Problem { place, ..self.problem(field, value, rule) }
     }
 
     pub(crate) fn text_at(&self, span: Option<&Range<usize>>) -> &'a str {

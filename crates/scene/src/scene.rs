@@ -32,6 +32,7 @@ pub struct Scene {
     staging: Staging,
     timeline: Option<Timeline>,
     still: Theatre,
+    warnings: Vec<Problem>,
 }
 
 impl Scene {
@@ -62,6 +63,11 @@ impl Scene {
     /// What messages call it: the file that it was read from.
     pub fn label(&self) -> &str {
         &self.label
+    }
+
+    /// What may be a mistake in it or in the files that it names, though it can be drawn.
+    pub fn warnings(&self) -> &[Problem] {
+        &self.warnings
     }
 
     /// SHA-256, in hexadecimal, over the scene's values (not its comments or layout) and every file that it names.
@@ -124,7 +130,8 @@ impl Scene {
 fn read(label: &str, name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, Problems> {
     let reading = Reading::default();
     let scene = read_into(&reading, label, name, toml, assets);
-    reading.end(scene)
+    let warnings = reading.take_warnings();
+    reading.end(scene.map(|scene| Scene { warnings, ..scene }))
 }
 
 /// Reads a scene with the files that it names into a reading.
@@ -212,7 +219,16 @@ fn read_scene(root: &Node, label: &str, name: &str, loader: Loader) -> Option<Sc
     let planes = settled.collect();
     let still = Theatre { screen, lamp, ambient, planes, exposure };
     let sha256 = hash(&root.canonical(), loader.files());
-    Some(Scene { label: label.to_owned(), sha256, toml: root.to_toml(), puppets, staging, timeline, still })
+    Some(Scene {
+        label: label.to_owned(),
+        sha256,
+        toml: root.to_toml(),
+        puppets,
+        staging,
+        timeline,
+        still,
+        warnings: Vec::new(),
+    })
 }
 
 fn read_puppets<'a>(sections: &mut Fields<'a>, name: &str, loader: &Loader) -> Vec<Option<Entry<'a>>> {

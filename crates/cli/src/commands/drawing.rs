@@ -97,6 +97,9 @@ impl Drawing {
     /// What is asked of the renderer, as a study would ask it.
     pub(crate) fn job(&self, output: Output, exposure: ExposureName, time_s: Option<f64>) -> Result<Job> {
         let scene = progress::watch(&Meter::default(), "reading the scene", || self.load())?;
+        for warning in scene.warnings() {
+            eprintln!("warning: {warning}");
+        }
         Ok(Job {
             technique: self.technique()?,
             view: self.view(&scene.still())?,
