@@ -5,11 +5,10 @@ use std::time::Instant;
 
 use anyhow::Result;
 use kelir_render::exposure::Rule;
-use kelir_render::file::Pending;
 use kelir_render::film::{Film, Format, Run};
 use kelir_render::folder::Folder;
 use kelir_render::job::{self, Output};
-use kelir_render::{Meter, Stats};
+use kelir_render::{Meter, Stats, file};
 use serde::Serialize;
 use serde_json::json;
 
@@ -37,7 +36,7 @@ const OTHER_FILMS: [&str; 9] = ["gif", "png", "webp", "webm", "mov", "mkv", "avi
 /// Where the frames go.
 enum Target {
     Folder { folder: Folder, names: Vec<String> },
-    Film { film: Film, file: Pending },
+    Film(Film),
 }
 
 impl Target {
@@ -45,7 +44,8 @@ impl Target {
         let ending = output.extension().and_then(|end| end.to_str()).unwrap_or_default().to_ascii_lowercase();
         let film = |format| {
             let film = Film::new(format, run).map_err(render_error)?;
-            Ok(Self::Film { film, file: Pending::begin(output)? })
+            file::try_writing(output)?;
+            Ok(Self::Film(film))
         };
         match ending.as_str() {
             "mp4" => film(Format::Mp4),
@@ -65,7 +65,7 @@ impl Target {
     /// Adds the frame that was drawn last; `repeated` says that it equals the one before.
     fn frame(&mut self, drawing: &job::Drawing<'_>, repeated: bool) -> Result<()> {
         match self {
-            Self::Film { film, .. } => film.frame(drawing.codes()).map_err(render_error)?,
+            Self::Film(film) => film.frame(drawing.codes()).map_err(render_error)?,
             Self::Folder { folder, names } => {
                 let name = match names.last() {
                     Some(last) if repeated => last.clone(),
@@ -115,7 +115,7 @@ pub(crate) fn run(args: Args) -> Result<()> {
     }
     bar.finish_and_clear();
     match target {
-        Target::Film { film, file } => file.finish(&film.finish().map_err(render_error)?)?,
+        Target::Film(film) => file::write_atomic(&args.output, &film.finish().map_err(render_error)?)?,
         Target::Folder { folder, names } => {
             let manifest = json!({
                 "fps": run.fps, "loop": run.repeat, "width": size[0], "height": size[1],

@@ -6,9 +6,8 @@ use std::time::Instant;
 use anyhow::Result;
 use kelir_render::encode::{self, Attributes};
 use kelir_render::exposure::Rule;
-use kelir_render::file::Pending;
 use kelir_render::job::{self, Drawn, Output};
-use kelir_render::{Frame, Meter, RenderError, Stats};
+use kelir_render::{Frame, Meter, RenderError, Stats, file};
 use serde::Serialize;
 
 use super::drawing::{Drawing, ExposureName, Told, render_error};
@@ -56,7 +55,7 @@ pub(crate) fn run(args: Args) -> Result<()> {
     let scene_sha256 = job.scene.sha256().to_owned();
 
     let begun = Instant::now();
-    let file = Pending::begin(&args.output)?;
+    file::try_writing(&args.output)?;
     let mut drawing = progress::watch(&Meter::default(), "exposure", || job::Drawing::open(&mut job))
         .map_err(render_error)?;
     let white = drawing.white();
@@ -71,7 +70,7 @@ pub(crate) fn run(args: Args) -> Result<()> {
     let (bytes, stats, linear) =
         progress::watch(&meter, technique.name(), || draw(&mut drawing, &container, &attributes))
             .map_err(render_error)?;
-    file.finish(&bytes)?;
+    file::write_atomic(&args.output, &bytes)?;
 
     let standard_error = linear.and_then(|frame| StandardError::of(&frame, white));
     if let Some(error) = &standard_error {

@@ -103,10 +103,9 @@ impl Staged for Deck {
 
 /// What the painter draws with one value that is no number: in the truth a standard error, in anything else a radiance.
 fn faulty(truth: bool) -> Technique {
-    match truth {
-        true => Technique::Mc(mc::Knobs { seed: 13, ..mc::Knobs::default() }),
-        false => Technique::Points(crate::points::Knobs::default()),
-    }
+    let seed = [("seed".to_owned(), 13.into())];
+    let (name, knobs) = if truth { ("mc", seed.into()) } else { ("points", BTreeMap::new()) };
+    Technique::parse(name, &knobs).unwrap()
 }
 
 /// Draws cards: the truth exactly and with an error bar, anything else one per cent too dark.
