@@ -1,7 +1,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use super::*;
-use crate::definition::{Block, Completion, Condition, Item, Texts};
+use crate::definition::{Block, Completion, Condition, Item};
+use crate::languages::Texts;
 use kelir_fixtures as fixtures;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};

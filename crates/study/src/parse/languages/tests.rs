@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use super::*;
+use crate::definition::StudyDefinition;
 use kelir_fixtures as fixtures;
 
 /// A study in one language, with more at its root and at its end.
