@@ -6,7 +6,6 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use crate::asked::{Asked, Noted};
-use crate::node::Node;
 use crate::place::{Lines, Place};
 use crate::problem::{Problem, Problems};
 use crate::words::shorten;
@@ -78,13 +77,8 @@ pub struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// What `read` makes of the document; nothing where it is no TOML, whose every error is collected.
-    pub fn read<T>(&self, read: impl FnOnce(&Node) -> Option<T>) -> Option<T> {
-        let table = self.parse()?;
-        read(&Node::root(self, &table))
-    }
-
-    fn parse(&self) -> Option<DeValue<'a>> {
+    /// The document; nothing where it is no TOML, whose every error is collected.
+    pub(crate) fn parse(&self) -> Option<DeValue<'a>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
         for error in &errors {
             let place = error.span().map(|span| self.place(span.start));

@@ -137,15 +137,17 @@ impl Study {
         let quoted = |text: &str| serde_json::to_string(&plain(text)).unwrap();
         let photo =
             if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
-        let head = format!(
-            "title = {}\nquestion = {}\nseed = 11\n\
-             conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}\n\
-             screening = {{ {} }}",
-            quoted(&self.title),
-            quoted(&self.question),
-            self.screening
-        );
-        let toml = fixtures::study(&head, [self.blocks.replace("TITLE", &quoted(&self.block_title))]);
+        let keys = [
+            ("title", &*quoted(&self.title)),
+            ("question", &quoted(&self.question)),
+            ("seed", "11"),
+            (
+                "conditions",
+                &format!("{{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}"),
+            ),
+            ("screening", &format!("{{ {} }}", self.screening)),
+        ];
+        let toml = fixtures::study(&keys, [self.blocks.replace("TITLE", &quoted(&self.block_title))]);
         let mut design =
             StudyDefinition::parse("studies/shadows.toml", &toml).unwrap_or_else(|e| panic!("{e}"));
         (design.title, design.question) = (self.title.clone(), self.question.clone());

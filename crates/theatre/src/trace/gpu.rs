@@ -7,9 +7,10 @@ use kelir_frame::RenderError;
 use kelir_frame::gpu::{Gpu, Output};
 use rayon::prelude::*;
 
+use super::axis::Axis;
 use super::bounds::Padded;
 use super::estimate::Job;
-use super::plan::{Axis, Plan, PlaneMap, Shape};
+use super::plan::{Plan, PlaneMap, Shape};
 use super::sobol::{self, Points, REPLICATES};
 
 /// The shader's text.

@@ -2,8 +2,9 @@
 
 use kelir_frame::Isa;
 
+use super::axis::Axis;
 use super::bounds::Padded;
-use super::plan::{Axis, EmitterPlan, Plan, PlaneMap, Shape};
+use super::plan::{EmitterPlan, Plan, PlaneMap, Shape};
 use super::sobol::{self, Points, REPLICATES};
 use super::tilted::{Seen, Tilted};
 

@@ -96,12 +96,19 @@ impl Job<'_> {
         let mut weights = vec![0f32; n];
         rows.fill(0.0);
         let pieces = || (0..plan.pieces.len()).filter(|p| plan.pieces[*p].emitter == e);
-        for p in pieces() {
+        let add = |weights: &mut [f32], piece: &[f32]| {
+            weights.iter_mut().zip(piece).for_each(|(s, w)| *s += w);
+        };
+        // A puppet's own shadow asks for the sum of all weights before the first piece.
+        for p in pieces().filter(|_| own) {
             self.piece_weights(p, j, span, &mut scratch.unit, &mut scratch.piece);
-            weights.iter_mut().zip(&scratch.piece).for_each(|(s, w)| *s += w);
+            add(&mut weights, &scratch.piece);
         }
         for p in pieces() {
             self.piece_weights(p, j, span, &mut scratch.unit, &mut scratch.piece);
+            if !own {
+                add(&mut weights, &scratch.piece);
+            }
             let mut mean = std::mem::take(&mut scratch.mean);
             mean.clear();
             mean.resize(channels * n, 0.0);
@@ -122,6 +129,10 @@ impl Job<'_> {
                             }
                         }
                     }
+                }
+                if sub == 1 {
+                    mean.copy_from_slice(&scratch.product);
+                    continue;
                 }
                 for (m, v) in mean.iter_mut().zip(scratch.product.chunks_exact(sub)) {
                     *m += v.iter().sum::<f32>();
