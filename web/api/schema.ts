@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. b73da220d81c53a6aea631a609b91291220364a9cfccf1ad9f9ae803bcd1af7c b983a449598af61e079e6e7dd09c59e46c1a81bccf91a4dd29c411998fa92d54
+// Generated from openapi.json by `npm run types`; do not edit. bdd28d9dd063952d254899c316294df3671631b622dda75fa522b97f3d1ebbe4 40592786e0e851f9910c9b27b024e1e0cc96d86d334da582012db8bc516564c1
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -820,13 +820,17 @@ export interface components {
             /** @description Each item alone, with all who answered it; empty for an adaptive block, which shows one item many times. */
             by_item: components["schemas"]["ItemReport"][];
             first?: components["schemas"]["Proportion"] | null;
+            first_intraclass?: components["schemas"]["Intraclass"] | null;
             /** @description The role that stands first: left, or the first interval. */
             first_role: components["schemas"]["Role"];
             /**
              * Format: double
-             * @description p corrected by Holm's method for the number of blocks; null where p is.
+             * @description p corrected by Holm's method for all planned tests, those that are not defined among them; null where p is, and of a test that was not
+             *     planned.
              */
             p_holm?: number | null;
+            /** @description Whether its t-test was planned: of an adaptive block it never is, of one with a psychometric function where the file says so. */
+            planned: boolean;
             psychometric?: components["schemas"]["PsychometricReport"] | null;
             rt_ms?: components["schemas"]["Quartiles"] | null;
             /** @description Their 1st to 99th percentile, interpolated likewise; empty without answers. */
@@ -945,20 +949,6 @@ export interface components {
          * @enum {string}
          */
         BootstrapMethod: "percentile" | "bias-corrected";
-        /** @description How far a mean may lie from its null value and still count as equivalent to it. */
-        Bounds: {
-            /**
-             * Format: double
-             * @description ± so many units of the values.
-             */
-            points: number;
-        } | {
-            /**
-             * Format: double
-             * @description ± so many standard deviations of the sample.
-             */
-            sd: number;
-        };
         /** @description What checking the stored answers found. */
         Chain: {
             /**
@@ -982,8 +972,7 @@ export interface components {
             binomial?: components["schemas"]["BinomialTest"] | null;
             detectable?: components["schemas"]["TPlan"] | null;
             effect?: components["schemas"]["EffectSize"] | null;
-            /** @description Two one-sided tests: is the mean equivalent to half the pairs, within ±0.5 choices and within ±0.5 SD? */
-            equivalence: components["schemas"]["Equivalence"][];
+            equivalence?: components["schemas"]["ShareEquivalence"] | null;
             intraclass?: components["schemas"]["Intraclass"] | null;
             mixed_logit?: components["schemas"]["MixedLogit"] | null;
             /** @description What is not defined and why, and what a reader must not conclude. */
@@ -1061,10 +1050,8 @@ export interface components {
             detectable: components["schemas"]["TPlan"];
             /** @description Effect size with 95% intervals. */
             effect: components["schemas"]["EffectSize"];
-            /** @description Equivalent within ± half a point of the mean number chosen? */
-            equivalence_points: components["schemas"]["Equivalence"];
-            /** @description Equivalent within ± half a standard deviation? */
-            equivalence_sd: components["schemas"]["Equivalence"];
+            /** @description Is the share of PA images chosen equivalent to one half? The paper states no bound: by a range of them, rising. */
+            equivalence: components["schemas"]["ShareEquivalence"][];
             /** @description `still-mc`, `still-photo` or `animation-mc`. */
             id: string;
             /**
@@ -1128,15 +1115,15 @@ export interface components {
             /** @enum {string} */
             source: "files";
         };
-        /** @description A condition's percentile interval, in JOD. */
+        /** @description A condition's interval, in JOD. */
         ConditionInterval: {
             /** @description Its name. */
             condition: string;
             /**
              * Format: double
-             * @description Upper end.
+             * @description Upper end, likewise.
              */
-            high: number;
+            high?: number | null;
             /**
              * Format: double
              * @description Position.
@@ -1144,14 +1131,14 @@ export interface components {
             jod: number;
             /**
              * Format: double
-             * @description Lower end.
+             * @description Lower end; null where the observers give no interval.
              */
-            low: number;
+            low?: number | null;
             /**
              * Format: double
-             * @description Standard deviation of the replicates.
+             * @description Standard error from leaving out each observer in turn; null likewise.
              */
-            standard_error: number;
+            standard_error?: number | null;
         };
         /** @description How far observers contradict the one axis and themselves. */
         Consistency: {
@@ -1161,7 +1148,7 @@ export interface components {
              *     2,000.
              */
             observers: number;
-            /** @description Those whom it predicts far worse than the rest (beyond Tukey's fence): to look at, not to exclude. */
+            /** @description Those whom it predicts far worse than the rest: to look at, not to exclude. */
             odd: components["schemas"]["ObserverFit"][];
             /** @description Circular triads over all observers. */
             triads: components["schemas"]["Triads"];
@@ -1189,7 +1176,7 @@ export interface components {
              */
             share: number;
         };
-        /** @description The percentile interval of a difference of two conditions, in JOD. */
+        /** @description The interval of a difference of two conditions, in JOD, and the test that there is none. */
         DifferenceInterval: {
             /** @description The condition subtracted from. */
             a: string;
@@ -1197,9 +1184,9 @@ export interface components {
             b: string;
             /**
              * Format: double
-             * @description Upper end.
+             * @description Upper end, likewise.
              */
-            high: number;
+            high?: number | null;
             /**
              * Format: double
              * @description a − b.
@@ -1207,15 +1194,26 @@ export interface components {
             jod: number;
             /**
              * Format: double
-             * @description Lower end.
+             * @description Lower end; null where the observers give no interval.
              */
-            low: number;
+            low?: number | null;
             /**
              * Format: double
-             * @description Two-sided achieved level of "no difference": (1 + twice the smaller share of replicates on one side of 0)/(1 + replicates), uncorrected
-             *     for the number of pairs.
+             * @description Two-sided p of "no difference" by flipping the signs of observers' scores.
              */
             p: number;
+            /** @description Whether every pattern of signs was tried. */
+            p_exact: boolean;
+            /**
+             * Format: double
+             * @description The same corrected by Holm's method for the number of pairs of conditions.
+             */
+            p_holm: number;
+            /**
+             * Format: double
+             * @description The smallest p that so many observers, or so many random patterns of signs, can give.
+             */
+            p_smallest: number;
         };
         /** @description An item that pooled versions show in different ways under one condition. */
         DifferentStimulus: {
@@ -1284,8 +1282,6 @@ export interface components {
         };
         /** @description What two one-sided tests say (TOST, Schuirmann 1987). */
         Equivalence: {
-            /** @description The bounds as asked for. */
-            bounds: components["schemas"]["Bounds"];
             /**
              * Format: double
              * @description Half the width of the equivalence range, in units of the values.
@@ -1318,6 +1314,16 @@ export interface components {
              * @description t against the upper bound, mean − mu < half_width.
              */
             t_upper: number;
+        };
+        /** @description How far from one half a block's share of target choices may lie and still count as equivalent to it. */
+        EquivalenceBound: {
+            /** @description Why a smaller difference does not matter. */
+            reason: string;
+            /**
+             * Format: double
+             * @description Half the width of the range about ½, as a share of choices, above 0 and below ½.
+             */
+            within: number;
         };
         /**
          * @description What is maximised.
@@ -1799,6 +1805,7 @@ export interface components {
             /**
              * Format: double
              * @description How far below the first quartile of all observers' `log_likelihood`, in interquartile ranges; 0 above it (Perez-Ortiz & Mantiuk 2017).
+             *     `None` also where that range is 0.
              */
             distance?: number | null;
             /** @description Who. */
@@ -1809,7 +1816,7 @@ export interface components {
              *     others' comparisons fall apart.
              */
             log_likelihood?: number | null;
-            /** @description `distance` > 1.5 (Tukey's fence): look at this observer. Not a reason to exclude by itself; a preregistered rule is. */
+            /** @description `distance` > 1.5 (Tukey's fence), or z < −3 where there is no distance: look at this observer. Not a reason to exclude by itself; a preregistered rule is. */
             odd: boolean;
             /**
              * Format: double
@@ -1869,7 +1876,7 @@ export interface components {
             high: number;
             /**
              * Format: double
-             * @description Lower end of the 95% posterior interval, as psignifit 4.3 reads it off its grid (half a cell from what finer grids converge to).
+             * @description Lower end of the 95% posterior interval, each point's mass spread over its cell (psignifit 4.3 reads both ends half a cell lower).
              */
             low: number;
             /** @description Whether the data do not bound it: mass lies on the edge of the prior's range. */
@@ -2028,12 +2035,19 @@ export interface components {
         };
         /** @description A share of choices. */
         Proportion: {
-            by_participant?: components["schemas"]["Bootstrap"] | null;
+            by_participant?: components["schemas"]["ShareInterval"] | null;
             /**
              * Format: int64
              * @description Choices of the target.
              */
             chosen: number;
+            /** @description Why they give none. */
+            note?: string | null;
+            /**
+             * Format: int64
+             * @description Participants who made them.
+             */
+            participants: number;
             /**
              * Format: double
              * @description chosen / trials.
@@ -2060,6 +2074,8 @@ export interface components {
             label: string;
             /** @description What is known of the lapse rate. */
             lapse: components["schemas"]["Lapse"];
+            /** @description Whether the t-test of the block's counts is planned too, beside its thresholds. */
+            t_test?: boolean;
             /** @description Shares of target choices, between ½ and 1, whose levels are wanted. */
             thresholds: number[];
             /** @description Its unit, such as `log10` or `mm`; absent: none. */
@@ -2078,7 +2094,7 @@ export interface components {
             lapse: components["schemas"]["Parameter"];
             /** @description Level at which the curve is halfway between guessing and lapsing (F = ½, unscaled), where the posterior is highest. */
             threshold: components["schemas"]["Parameter"];
-            threshold_by_participant?: components["schemas"]["Bootstrap"] | null;
+            threshold_by_participant?: components["schemas"]["ResampledThreshold"] | null;
             /** @description From F = .05 to F = .95, in levels. */
             width: components["schemas"]["Parameter"];
         };
@@ -2156,6 +2172,16 @@ export interface components {
             scale?: components["schemas"]["ScaleIntervals"] | null;
             /** @description Why there is no scale. */
             scale_note?: string | null;
+            /** @description What was shown in the choices that a scale takes together. */
+            scale_pools: string;
+        };
+        /** @description A threshold's interval from resampled participants. */
+        ResampledThreshold: components["schemas"]["Bootstrap"] & {
+            /**
+             * @description Resamples whose threshold or width ended on the edge of the range that is searched, or whose threshold could be any number: their
+             *     participants did not show the curve, and the interval may be wider than it is here.
+             */
+            at_bound: number;
         };
         /** @description When an input counts as the response to a trial. What does not count is logged with its time. */
         ResponseRules: {
@@ -2252,26 +2278,24 @@ export interface components {
             conditions: components["schemas"]["ConditionInterval"][];
             /** @description One interval a pair of conditions: read significance here, not from overlaps above. */
             differences: components["schemas"]["DifferenceInterval"][];
+            /** @description Random patterns of signs behind each p that is not exact. */
+            flips: number;
             /**
              * Format: double
              * @description Confidence level.
              */
             level: number;
+            /** @description Why an interval is missing; null where none is. */
+            note?: string | null;
             /** @description Observers with choices. */
             observers: number;
-            /** @description Resamples that were separated and so fitted with Jeffreys' prior. */
-            penalised: number;
-            /** @description Resamples drawn. */
-            replicates: number;
             /** @description The scale of all observers. */
             scale: components["schemas"]["Scale"];
             /**
              * Format: int64
-             * @description The seed that repeats it.
+             * @description The seed that repeats them.
              */
             seed: number;
-            /** @description Resamples whose comparisons fell apart, left out. */
-            undefined: number;
         };
         /** @description Whose answers are set aside, decided before there are any. */
         Screening: {
@@ -2355,6 +2379,46 @@ export interface components {
         };
         /** @description How far a session is. */
         SessionStatus: "consent" | "in_progress" | "completed";
+        /** @description Whether a share is equivalent to one half. */
+        ShareEquivalence: {
+            /** @description The tests, in choices of one participant. */
+            tests: components["schemas"]["Equivalence"];
+            /**
+             * Format: double
+             * @description The bound: how far from ½ the share may lie.
+             */
+            within: number;
+        };
+        /** @description A share's interval over participants. */
+        ShareInterval: {
+            /**
+             * Format: double
+             * @description How many independent choices it takes the choices to be worth; never more than there are.
+             */
+            effective_trials: number;
+            /**
+             * Format: double
+             * @description Upper end.
+             */
+            high: number;
+            /**
+             * Format: double
+             * @description Confidence level.
+             */
+            level: number;
+            /**
+             * Format: double
+             * @description Lower end.
+             */
+            low: number;
+            /** @description How it was found. */
+            method: components["schemas"]["ShareMethod"];
+        };
+        /**
+         * @description How a share's interval was found.
+         * @enum {string}
+         */
+        ShareMethod: "wilson" | "clustered-wilson" | "clopper-pearson";
         /** @description How often stimuli were shown at a size, and how large that was on participants' displays. */
         ShownAt: {
             /**
@@ -2471,6 +2535,11 @@ export interface components {
             simulated: number;
             /** @description The numbers in a sentence. */
             summary: string;
+            /**
+             * Format: int64
+             * @description Participants in progress who are judged only once they finish.
+             */
+            unfinished: number;
             /** @description Kinds of sessions that are judged like participants', because somebody asked for it. */
             with: components["schemas"]["SessionKind"][];
         };
@@ -2612,6 +2681,7 @@ export interface components {
              * @description Whose defaults the file has; files without one have the first's.
              */
             edition?: number;
+            equivalence?: components["schemas"]["EquivalenceBound"] | null;
             /**
              * Format: int32
              * @description How long taking part is said to take, in minutes.

@@ -90,6 +90,7 @@ const nobody: Schemas["Section"] = {
 const standing = (taken: boolean): Schemas["Standing"] => ({
   summary: taken ? "41 began, 32 completed, 3 in progress, 1 left out by your rules, 31 judged." : "0 began.",
   judged: taken ? 31 : 0,
+  unfinished: 0,
   repeated: [],
   pilots: 0,
   simulated: 0,

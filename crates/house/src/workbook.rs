@@ -1,6 +1,7 @@
 //! Tables as a spreadsheet (.xlsx): numbers are numbers whatever the reader's language, texts are texts and nothing else.
 
 use crate::table::{Table, codebook_of};
+use kelir_report::visible;
 use kelir_study::schema::Column;
 use rust_xlsxwriter::{DocProperties, ExcelDateTime, Format, Workbook, Worksheet, XlsxError};
 
@@ -71,18 +72,9 @@ fn write(sheet: &mut Worksheet, columns: &[Column], rows: &[Vec<String>]) -> Res
     Ok(())
 }
 
-/// A text in which nothing is hidden: characters that control, or that turn the direction of what is around them, stand as their numbers.
+/// A text in which nothing is hidden, as long as a cell may be.
 fn plain(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        let is_none = matches!(c, '\u{fffe}' | '\u{ffff}');
-        if c.is_control() || turns || is_none {
-            shown.push_str(&format!("⟨U+{:04X}⟩", u32::from(c)));
-        } else {
-            shown.push(c);
-        }
-    }
+    let shown = visible(text, &[]);
     match shown.char_indices().nth(MOST_CHARACTERS) {
         Some(_) => shown.chars().take(MOST_CHARACTERS - 1).chain(['…']).collect(),
         None => shown,

@@ -2,7 +2,7 @@
 
 use crate::document::{Cell, Piece, Row, Section, Table};
 use crate::figures;
-use crate::format::{MISSING, count, fixed, p_value, range, significant};
+use crate::format::{MISSING, below, count, fixed, resolved_p, significant};
 use crate::numbers::{Number, Sample, of_block, psychometric};
 use kelir_study::analysis::BlockSummary;
 use kelir_study::report::{BlockReport, LEVEL};
@@ -87,20 +87,28 @@ fn cells(number: &Number) -> Vec<Cell> {
         // Very small and very large numbers keep their digits.
         let hidden =
             x != 0.0 && decimals > 0 && (x.abs() < 5.0 * 0.1f64.powi(decimals as i32) || x.abs() >= 1e6);
-        if hidden { significant(x, 3) } else { fixed(x, decimals) }
+        match x {
+            _ if hidden => significant(x, 3),
+            // A share of 0.9996 is not 1.
+            x if x > 0.0 && x < 1.0 => below(x, 1.0, decimals),
+            _ => fixed(x, decimals),
+        }
     };
     let statistic = Cell::text(&number.statistic);
     let interval = number.interval.map_or_else(Cell::default, |i| {
         let level =
             if i.level == LEVEL { String::new() } else { format!("{}%: ", fixed(100.0 * i.level, 0)) };
-        let shown = format!("{level}{}", range(i.low, i.high, number.decimals.max(1)));
-        Cell { shown, exact: Some(format!("{} {}", i.low, i.high)), note: None }
+        let end = |x: f64| if x.is_finite() { fixed(x, number.decimals.max(1)) } else { "beyond".to_owned() };
+        let ends: Vec<String> =
+            [i.low, i.high].iter().filter(|x| x.is_finite()).map(f64::to_string).collect();
+        let shown = format!("{level}{} to {}", end(i.low), end(i.high));
+        Cell { shown, exact: Some(ends.join(" ")).filter(|ends| !ends.is_empty()), note: None }
     });
     vec![
         if number.note.is_empty() { statistic } else { statistic.noted(&number.note) },
         number.value.map_or_else(|| Cell::text(MISSING), |x| Cell::number(shown(x, number.decimals), x)),
         interval,
-        number.p.map_or_else(Cell::default, |p| Cell::number(p_value(p), p)),
+        number.p.map_or_else(Cell::default, |p| Cell::number(resolved_p(p, number.p_smallest), p)),
         number.n.map_or_else(Cell::default, Cell::whole),
     ]
 }

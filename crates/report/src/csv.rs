@@ -12,7 +12,8 @@ const HEADER: [&str; 11] =
 /// `sample` is `screened`, or `everybody` for the same with the excluded; `block` is empty for what is of the whole study.
 pub fn csv(report: &StudyReport) -> String {
     let rows = numbers(report).into_iter().map(|number| {
-        let exact = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
+        // An end beyond everything is no number: its note says so.
+        let exact = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or_else(String::new, |x| x.to_string());
         let sample = match number.sample {
             Sample::Screened => "screened",
             Sample::Everybody => "everybody",
@@ -49,11 +50,35 @@ pub fn csv_table(
 ) -> String {
     const IN_MEMORY: &str = "memory takes every row";
     let mut out = WriterBuilder::new().flexible(true).terminator(end).from_writer(Vec::new());
-    out.write_record(header.into_iter().map(|cell| no_formula(cell.as_ref()))).expect(IN_MEMORY);
+    out.write_record(header.into_iter().map(|text| cell(text.as_ref()))).expect(IN_MEMORY);
     for row in rows {
-        out.write_record(row.into_iter().map(|cell| no_formula(cell.as_ref()))).expect(IN_MEMORY);
+        out.write_record(row.into_iter().map(|text| cell(text.as_ref()))).expect(IN_MEMORY);
     }
     String::from_utf8(out.into_inner().expect(IN_MEMORY)).expect("cells are text")
+}
+
+/// A text in which nothing is hidden: characters that control (but for `kept`), or that turn the direction of what is around them, stand as their
+/// numbers.
+pub fn visible(text: &str, kept: &[char]) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        let is_none = matches!(c, '\u{fffe}' | '\u{ffff}');
+        if (c.is_control() || turns || is_none) && !kept.contains(&c) {
+            shown.push_str(&format!("⟨U+{:04X}⟩", u32::from(c)));
+        } else {
+            shown.push(c);
+        }
+    }
+    shown
+}
+
+/// What a cell of CSV may hold, quoted.
+const WHITE: [char; 3] = ['\t', '\r', '\n'];
+
+/// A cell in which nothing is hidden and that is no formula.
+fn cell(text: &str) -> String {
+    no_formula(&visible(text, &WHITE))
 }
 
 /// A cell whose text a spreadsheet would take for a formula gets an apostrophe before it, behind a semicolon or tab too.
@@ -100,5 +125,7 @@ mod tests {
         assert_eq!(quoted("one; =two"), "one; =two");
         assert_eq!(quoted("\r=1"), "\"'\r=1\"");
         assert_eq!(quoted("a＝b"), "a＝b");
+        assert_eq!(quoted("a\0b\u{202e}c\u{1b}[31m"), "a⟨U+0000⟩b⟨U+202E⟩c⟨U+001B⟩[31m");
+        assert_eq!(quoted("\u{202e}=1"), "⟨U+202E⟩=1");
     }
 }

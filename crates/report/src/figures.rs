@@ -4,8 +4,9 @@ use crate::document::{Figure, Piece};
 use crate::format::{fixed, percent, range, share};
 use crate::{PhysicalError, StudyReport};
 use kelir_plot::{Axis, Estimate, Forest, Point, Rule, Series, forest, svg};
-use kelir_stats::inference::Interval;
-use kelir_study::report::{BlockReport, Proportion};
+use kelir_stats::inference::{Interval, ShareEquivalence};
+use kelir_stats::paper::Comparison;
+use kelir_study::report::{ALPHA, BlockReport, Proportion};
 
 /// Width of every figure, px: on a phone it is shown at six tenths and its letters can still be read.
 const WIDTH: u32 = 560;
@@ -22,12 +23,12 @@ fn drawn(name: &str, caption: String, picture: Result<String, kelir_plot::PlotEr
 /// Shares of target choices: each block over all its choices, then each pair alone. `None` without answers.
 pub(crate) fn choices(blocks: &[BlockReport]) -> Option<Piece> {
     let row = |label: String, found: Option<&Proportion>, strong| {
-        let interval = found.map(interval_of);
+        let interval = found.and_then(Proportion::interval);
         Estimate {
             label,
             value: found.map(|p| p.proportion),
             interval: interval.map(|i| [i.low, i.high]),
-            text: found.zip(interval).map_or("no answers".to_owned(), |(p, i)| share(p.proportion, i)),
+            text: found.map_or("no answers".to_owned(), |p| share(p.proportion, interval)),
             strong,
         }
     };
@@ -53,14 +54,9 @@ pub(crate) fn choices(blocks: &[BlockReport]) -> Option<Piece> {
         rows,
         width: WIDTH,
     };
-    let caption = "Share of choices of the counted condition with its 95% interval. Orange: a whole block, over all its choices, the interval from resampled \
-         participants. Blue: one pair, Wilson's interval. Dashed: chance.";
+    let caption = "Share of choices of the counted condition with its 95% interval. Orange: a whole block, over all its choices. Blue: one pair. \
+         Intervals are over participants. Dashed: chance.";
     Some(drawn("choices", caption.to_owned(), forest(&figure)))
-}
-
-fn interval_of(found: &Proportion) -> Interval {
-    let resampled = found.by_participant.as_ref();
-    resampled.map_or(found.wilson, |b| Interval { low: b.low, high: b.high, level: b.level })
 }
 
 /// Most bars that are named one by one.
@@ -106,8 +102,11 @@ pub(crate) fn scale(report: &StudyReport) -> Option<Piece> {
     let rows = conditions.iter().map(|c| Estimate {
         label: c.condition.clone(),
         value: Some(c.jod),
-        interval: Some([c.low, c.high]),
-        text: format!("{}, {}", fixed(c.jod, 2), range(c.low, c.high, 2)),
+        interval: c.low.zip(c.high).map(|(low, high)| [low, high]),
+        text: c.low.zip(c.high).map_or_else(
+            || fixed(c.jod, 2),
+            |(low, high)| format!("{}, {}", fixed(c.jod, 2), range(low, high, 2)),
+        ),
         strong: false,
     });
     let figure = Forest {
@@ -118,13 +117,41 @@ pub(crate) fn scale(report: &StudyReport) -> Option<Piece> {
         width: WIDTH,
     };
     let caption = format!(
-        "Positions in just-objectionable differences: 1 JOD apart is a choice by 75%. Lines: {} intervals from {} resamples of {} participants. Overlapping intervals \
-         are no test: differences are tested in the table.",
+        "Positions in just-objectionable differences: 1 JOD apart is a choice by 75%. Lines: {} intervals from leaving out each of {} participants in turn. Overlapping \
+         intervals are no test: differences are tested in the table.",
         percent(found.level),
-        found.replicates,
         found.observers
     );
     Some(drawn("scale", caption, forest(&figure)))
+}
+
+/// The tests of a comparison of the paper by the bound of equivalence: each one-sided test, and that of a difference.
+pub(crate) fn equivalence(of: &Comparison) -> Piece {
+    let line = |name: &str, dashed, p: &dyn Fn(&ShareEquivalence) -> f64| Series {
+        name: name.to_owned(),
+        points: of.equivalence.iter().map(|e| Point { x: e.within, y: p(e), ..Point::default() }).collect(),
+        line: true,
+        dashed,
+        ..Series::default()
+    };
+    let figure = kelir_plot::Figure {
+        title: format!("{}: p by the bound of equivalence", of.id),
+        x: Axis::linear("bound on the share, ±").within(0.0, 0.5),
+        y: Axis::linear("p").within(0.0, 1.0),
+        series: vec![
+            line("above ½ − bound", false, &|e| e.tests.p_lower),
+            line("below ½ + bound", false, &|e| e.tests.p_upper),
+            line("difference", true, &|_| of.test.p),
+        ],
+        rules: vec![Rule::Horizontal(ALPHA, fixed(ALPHA, 2))],
+        size: [WIDTH, 300],
+    };
+    let caption = format!(
+        "{}: p of the two one-sided t-tests of equivalence to a half, by how far from it PA's share may lie. Equivalence is shown where both lie under the \
+         line at {ALPHA}. Dashed: the two-sided t-test of a difference, which has no bound.",
+        of.title
+    );
+    drawn(&format!("equivalence-{}", of.id), caption, svg(&figure))
 }
 
 /// A block's psychometric function with its data.
@@ -132,7 +159,7 @@ pub(crate) fn psychometric(block: &BlockReport) -> Option<Piece> {
     let found = block.psychometric.as_ref()?;
     let data = found.points.iter().filter_map(|point| {
         let share = point.target.as_ref()?;
-        let interval = Some([share.wilson.low, share.wilson.high]);
+        let interval = share.interval().map(|i| [i.low, i.high]);
         Some(Point { x: point.level, y: share.proportion, interval, label: None })
     });
     let data: Vec<Point> = data.collect();
@@ -158,7 +185,7 @@ pub(crate) fn psychometric(block: &BlockReport) -> Option<Piece> {
         rules,
         size: [WIDTH, HEIGHT],
     };
-    let caption = "Dots: share of choices at each level with Wilson's 95% interval. Curve: the psychometric function where its posterior is highest. Dashed: guessing, and \
+    let caption = "Dots: share of choices at each level with its 95% interval over participants. Curve: the psychometric function where its posterior is highest. Dashed: guessing, and \
          the threshold, halfway between guessing and lapsing.";
     Some(drawn(&format!("psychometric-{}", file_name(&block.summary.id)), caption.to_owned(), svg(&figure)))
 }
@@ -202,7 +229,7 @@ pub(crate) struct Judged<'a> {
     pub error: PhysicalError,
     /// Share of choices that preferred it to the other of its pair.
     pub share: f64,
-    pub interval: Interval,
+    pub interval: Option<Interval>,
 }
 
 /// Every stimulus with a measured error and answers.
@@ -216,11 +243,12 @@ pub(crate) fn judged(report: &StudyReport) -> Vec<Judged<'_>> {
                 .filter(|s| s.item == pair.id && block.summary.conditions.contains(&s.condition))
             {
                 let Some(error) = stimulus.error() else { continue };
-                let Interval { low, high, level } = target.wilson;
+                let turned =
+                    |Interval { low, high, level }| Interval { low: 1.0 - high, high: 1.0 - low, level };
                 let (share, interval) = if stimulus.condition == block.summary.target {
-                    (target.proportion, target.wilson)
+                    (target.proportion, target.interval())
                 } else {
-                    (1.0 - target.proportion, Interval { low: 1.0 - high, high: 1.0 - low, level })
+                    (1.0 - target.proportion, target.interval().map(turned))
                 };
                 found.push(Judged { pair: &pair.id, condition: &stimulus.condition, error, share, interval });
             }
@@ -242,7 +270,7 @@ pub(crate) fn errors(report: &StudyReport) -> Option<Piece> {
         let points = all.iter().filter(|j| (j.condition, j.error.own) == (*condition, *own)).map(|j| Point {
             x: j.error.rms,
             y: j.share,
-            interval: Some([j.interval.low, j.interval.high]),
+            interval: j.interval.map(|i| [i.low, i.high]),
             // The pair is named once, at the stimulus that was measured.
             label: (!own).then(|| j.pair.to_owned()),
         });
@@ -258,8 +286,8 @@ pub(crate) fn errors(report: &StudyReport) -> Option<Piece> {
         size: [WIDTH, HEIGHT],
     };
     let caption = "Each stimulus: its error in penumbra against its reference, or its own standard error (own noise) where it is the reference; of simulated \
-         photographs before the camera. Upwards the share of participants who preferred it to the other of its pair, with Wilson's 95% interval. \
-         Labels name pairs, colours and marks conditions.";
+         photographs before the camera. Upwards the share of participants who preferred it to the other of its pair, with its 95% interval over \
+         participants. Labels name pairs, colours and marks conditions.";
     Some(drawn("errors", caption.to_owned(), svg(&figure)))
 }
 

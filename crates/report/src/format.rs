@@ -51,6 +51,19 @@ pub(crate) fn p_value(p: f64) -> String {
     if p >= 0.001 || p == 0.0 { fixed(p, 4) } else { power_of_ten(p, 3) }
 }
 
+/// A p that resamples gave: "≤ 0.0001" where none of them reached what was seen, as it may then be smaller.
+pub(crate) fn resolved_p(p: f64, smallest: Option<f64>) -> String {
+    match smallest {
+        Some(smallest) if p <= smallest * (1.0 + 1e-9) => {
+            // Rounded up, so that it stays a bound.
+            let digits = (1.0 - smallest.log10()).ceil().max(0.0) as usize;
+            let unit = 10f64.powi(digits as i32);
+            format!("≤ {}", fixed((smallest * unit - 1e-9).ceil() / unit, digits).trim_end_matches('0'))
+        }
+        _ => p_value(p),
+    }
+}
+
 /// "p = 0.1606".
 pub(crate) fn p_equals(p: f64) -> String {
     format!("p = {}", p_value(p))
@@ -61,14 +74,25 @@ pub(crate) fn range(low: f64, high: f64, decimals: usize) -> String {
     format!("{} to {}", fixed(low, decimals), fixed(high, decimals))
 }
 
-/// A share as a whole percentage.
+/// A share as a whole percentage, with as many more decimals as it takes to tell it from none and from all.
 pub(crate) fn percent(share: f64) -> String {
-    format!("{}%", fixed(100.0 * share, 0))
+    format!("{}%", below(100.0 * share, 100.0, 0))
 }
 
-/// "41%, 30% to 53%".
-pub(crate) fn share(value: f64, interval: Interval) -> String {
-    format!("{}, {} to {}", percent(value), percent(interval.low), percent(interval.high))
+/// A number from 0 to `most` with so many decimals, and with more where it would else be read as one of the two.
+pub(crate) fn below(x: f64, most: f64, decimals: usize) -> String {
+    let is_end = |x: f64| x <= 0.0 || x >= most;
+    let told = |decimals: &usize| is_end(x) || !is_end(fixed(x, *decimals).parse().unwrap_or_default());
+    fixed(x, (decimals..MOST_DECIMALS).find(told).unwrap_or(MOST_DECIMALS))
+}
+
+/// Decimals beyond which nobody reads.
+const MOST_DECIMALS: usize = 12;
+
+/// "41%, 30% to 53%", or the share alone where it has no interval.
+pub(crate) fn share(value: f64, interval: Option<Interval>) -> String {
+    let ends = interval.map_or_else(String::new, |i| format!(", {} to {}", percent(i.low), percent(i.high)));
+    format!("{}{ends}", percent(value))
 }
 
 /// "1 pair", "2 pairs".
@@ -104,8 +128,20 @@ mod tests {
             (p_value(0.160569), "0.1606"),
             (p_value(2.03782e-4), "2.04 × 10⁻⁴"),
             (p_value(0.0), "0.0000"),
+            (resolved_p(1e-4, Some(1e-4)), "≤ 0.0001"),
+            (resolved_p(1.0 / 1001.0, Some(1.0 / 1001.0)), "≤ 0.001"),
+            (resolved_p(1.0 / 2000.0, Some(1.0 / 2000.0)), "≤ 0.0005"),
+            (resolved_p(2e-4, Some(1e-4)), "2.00 × 10⁻⁴"),
+            (resolved_p(1e-4, None), "1.00 × 10⁻⁴"),
             (list(&["a".into(), "b".into(), "c".into()]), "a, b and c"),
             (count(1, "pair"), "1 pair"),
+            (percent(1.0), "100%"),
+            (percent(0.0), "0%"),
+            (percent(249.0 / 250.0), "99.6%"),
+            (percent(9_999.0 / 10_000.0), "99.99%"),
+            (percent(0.004), "0.4%"),
+            (percent(0.995), "99.5%"),
+            (percent(0.406), "41%"),
         ] {
             assert_eq!(shown, expected);
         }

@@ -3,7 +3,6 @@
 use crate::StudyReport;
 use crate::document::{Piece, Section, short};
 use crate::format::{count, fixed, list, p_equals, percent, significant};
-use kelir_stats::inference::Bounds;
 use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER};
 
 /// The report's first section.
@@ -69,10 +68,9 @@ fn other(block: &BlockReport) -> &str {
     if *a == block.summary.target { b } else { a }
 }
 
-/// Whether both tests of equivalence succeed.
+/// Whether the share is shown to be equivalent to a half.
 fn equivalent(block: &BlockReport) -> bool {
-    let tests = &block.analysis.equivalence;
-    !tests.is_empty() && tests.iter().all(|test| test.p < ALPHA)
+    block.analysis.equivalence.is_some_and(|found| found.tests.p < ALPHA)
 }
 
 fn significant_after_holm(block: &BlockReport) -> bool {
@@ -89,9 +87,9 @@ fn found(report: &StudyReport) -> Vec<String> {
         order.sort_by(|a, b| b.jod.total_cmp(&a.jod));
         let names: Vec<String> =
             order.iter().map(|c| format!("{} ({})", c.condition, fixed(c.jod, 2))).collect();
-        let sure = scale.differences.iter().filter(|d| d.p < ALPHA).count();
+        let sure = scale.differences.iter().filter(|d| d.p_holm < ALPHA).count();
         lines.push(format!(
-            "On one scale, in JOD, from most to least often chosen: {}. {} of {} differences have p < {ALPHA}, uncorrected.",
+            "On one scale, in JOD, from the highest place to the lowest: {}. {} of {} differences have p < {ALPHA} after Holm's correction.",
             list(&names),
             sure,
             scale.differences.len()
@@ -123,15 +121,14 @@ fn of_block(block: &BlockReport) -> String {
         }
         return format!("{title}: {}.", crate::blocks::none_judged(summary));
     };
-    let interval =
-        share.by_participant.as_ref().map_or([share.wilson.low, share.wilson.high], |b| [b.low, b.high]);
+    let interval = share.interval().map_or("no interval".to_owned(), |i| {
+        format!("95% interval {} to {}", percent(i.low), percent(i.high))
+    });
     let chose = format!(
-        "{title}: {} chose {target} over {other} in {} of {} (95% interval {} to {})",
+        "{title}: {} chose {target} over {other} in {} of {} ({interval})",
         count(summary.n, "participant"),
         percent(share.proportion),
         count(share.trials, "choice"),
-        percent(interval[0]),
-        percent(interval[1])
     );
     let (Some(t), Some(df), Some(p), Some(mean)) = (summary.t, summary.df, summary.p, summary.mean) else {
         let why = summary.note.as_deref().unwrap_or("t is not defined");
@@ -151,9 +148,13 @@ fn of_block(block: &BlockReport) -> String {
     if significant_after_holm(block) {
         let g = analysis.effect.as_ref().map_or(String::new(), |e| format!(", g = {}", fixed(e.g, 2)));
         format!("{chose}: {way} often than half the time, {test}{g}.")
-    } else if equivalent(block) {
+    } else if !block.planned {
+        format!("{chose}. Its t-test was not planned, {test}: nothing is concluded from it.")
+    } else if let Some(found) = analysis.equivalence.filter(|_| equivalent(block)) {
         format!(
-            "{chose}: not significantly different from half the time, {test}, and equivalent to it within both bounds asked for."
+            "{chose}: not significantly different from half the time, {test}, and equivalent to it within the study's bound of ±{} on the share, {}.",
+            found.within,
+            p_equals(found.tests.p)
         )
     } else {
         format!("{chose}: not significantly different from half the time, {test}.")
@@ -165,32 +166,40 @@ fn not_shown(report: &StudyReport) -> Vec<String> {
     for block in &report.report.blocks {
         let (summary, analysis) = (&block.summary, &block.analysis);
         let (title, [a, b]) = (&summary.title, &summary.conditions);
-        let Some(p) = summary.p else { continue };
+        if let Some(found) = block.psychometric.as_ref().filter(|found| found.fit.is_none()) {
+            lines.push(format!("{title}: a threshold. {}", found.notes.join(" ")));
+        }
+        if !block.planned {
+            continue;
+        }
+        let Some(p) = summary.p else {
+            let why = summary.note.as_deref().unwrap_or("t is not defined");
+            lines.push(format!(
+                "{title}: whether participants can tell {a} from {b}, by the planned t-test: {why}."
+            ));
+            continue;
+        };
         if p < ALPHA && !significant_after_holm(block) {
             lines.push(format!(
-                "{title}: a difference. The test alone has {}, but not after correction for {} blocks.",
+                "{title}: a difference. The test alone has {}, but not after correction for {} planned tests.",
                 p_equals(p),
-                report.report.blocks.iter().filter(|b| b.p_holm.is_some()).count()
+                report.report.blocks.iter().filter(|b| b.planned).count()
             ));
         }
         if significant_after_holm(block) || equivalent(block) {
             continue;
         }
-        let tests: Vec<String> = analysis
-            .equivalence
-            .iter()
-            .map(|test| {
-                let bounds = match test.bounds {
-                    Bounds::Points(points) => format!("±{points} choices"),
-                    Bounds::Sd(sd) => format!("±{sd} SD"),
-                };
-                let is = if test.p < ALPHA { "is shown" } else { "is not" };
-                format!("equivalence within {bounds} {is} ({})", p_equals(test.p))
-            })
-            .collect();
+        let equivalence = match analysis.equivalence {
+            Some(found) => format!(
+                "equivalence within the study's bound of ±{} on the share is not shown ({})",
+                found.within,
+                p_equals(found.tests.p)
+            ),
+            None => "the study file states no bound within which a share would count as equivalent to a half"
+                .to_owned(),
+        };
         let mut line = format!(
-            "{title}: that participants cannot tell {a} from {b}. Not significant is not the same: {}",
-            list(&tests)
+            "{title}: that participants cannot tell {a} from {b}. Not significant is not the same: {equivalence}"
         );
         if let Some(bayes) = &analysis.bayes {
             let (ratio, hypothesis) =

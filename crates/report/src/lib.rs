@@ -19,7 +19,7 @@ mod sources;
 mod standing;
 mod text;
 
-pub use self::csv::{csv, csv_table};
+pub use self::csv::{csv, csv_table, visible};
 pub use ::csv::Terminator;
 pub use display::ShownAt;
 pub use document::{Cell, Column, Document, Figure, Piece, Row, Section, Table};

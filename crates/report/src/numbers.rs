@@ -3,8 +3,8 @@
 use crate::StudyReport;
 use crate::display;
 use crate::format::count;
-use kelir_stats::clustered::{Bootstrap, Coefficient};
-use kelir_stats::inference::{Bounds, Interval};
+use kelir_stats::clustered::{Bootstrap, Coefficient, ShareMethod};
+use kelir_stats::inference::Interval;
 use kelir_stats::pairwise::ScaleIntervals;
 use kelir_study::report::{ALPHA, BlockReport, LEVEL, Parameter, Proportion, PsychometricReport};
 use kelir_study::trials::Role;
@@ -31,10 +31,12 @@ pub struct Number {
     pub statistic: String,
     /// The number; `None` where only a p is given.
     pub value: Option<f64>,
-    /// Its interval.
+    /// Its interval; an infinite end is beyond everything that could be shown.
     pub interval: Option<Interval>,
     /// The p-value that belongs to it.
     pub p: Option<f64>,
+    /// The smallest p that so many resamples or simulations can give; `None` for a p that is computed.
+    pub p_smallest: Option<f64>,
     /// How many participants or choices it rests on; the note says of what when it is not participants.
     pub n: Option<u64>,
     /// What a reader should know.
@@ -132,6 +134,7 @@ impl<'a> Rows<'a> {
             value: Some(value),
             interval: None,
             p: None,
+            p_smallest: None,
             n: None,
             note: String::new(),
             decimals,
@@ -142,10 +145,10 @@ impl<'a> Rows<'a> {
         self.number(statistic, value as f64, 0)
     }
 
-    /// A share with the interval that is right for it: from resampled participants where they gave several answers.
+    /// A share with its interval over participants.
     fn share(self, statistic: impl Into<String>, share: &Proportion) -> Number {
-        let interval = share.by_participant.as_ref().map_or(share.wilson, resampled);
-        self.number(statistic, share.proportion, 3).within(interval).of_n(share.trials, "n: choices")
+        let row = self.number(statistic, share.proportion, 3).of_n(share.trials, &interval_of(share));
+        Number { interval: share.interval(), ..row }
     }
 
     fn coefficient(self, statistic: &str, c: &Coefficient) -> Number {
@@ -163,12 +166,37 @@ impl Number {
         Number { p: Some(p), ..self }
     }
 
+    /// A p that comes from resamples, of which the smallest possible is `smallest`.
+    fn resolved_to(self, smallest: Option<f64>) -> Number {
+        Number { p_smallest: smallest, ..self }
+    }
+
     fn of_n(self, n: u64, note: &str) -> Number {
         Number { n: Some(n), note: note.to_owned(), ..self }
     }
 
     fn noted(self, note: impl Into<String>) -> Number {
         Number { note: note.into(), ..self }
+    }
+}
+
+/// What a share's interval is, and what its n counts.
+fn interval_of(share: &Proportion) -> String {
+    let people = count(share.participants, "participant");
+    let Some(found) = share.by_participant else {
+        return share.note.as_ref().map_or("n: choices".to_owned(), |why| format!("{why} n: choices"));
+    };
+    match found.method {
+        ShareMethod::Wilson => "Wilson's interval; n: choices, one a participant".to_owned(),
+        ShareMethod::ClusteredWilson => {
+            format!(
+                "Wilson's interval of {:.0} independent choices, the worth of those of {people}; n: choices",
+                found.effective_trials
+            )
+        }
+        ShareMethod::ClopperPearson => {
+            format!("all alike: Clopper and Pearson's interval over {people}; n: choices")
+        }
     }
 }
 
@@ -205,7 +233,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     if let (Some(value), Some(df), Some(p)) = (summary.t, summary.df, summary.p) {
         all.push(Number { n: Some(summary.n), ..t.number(format!("t (df = {df})"), value, 4).with_p(p) });
         if let Some(p_holm) = block.p_holm {
-            all.push(t.number("t, p corrected by Holm for all blocks", value, 4).with_p(p_holm));
+            all.push(t.number("t, p corrected by Holm for all planned tests", value, 4).with_p(p_holm));
         }
     }
 
@@ -214,19 +242,14 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         all.push(effects.number("Cohen's d (SD)", effect.d, 3).within(effect.d_interval));
         all.push(effects.number("Hedges' g (SD)", effect.g, 3).within(effect.g_interval));
     }
-    let offset = summary.mean.map(|mean| mean - summary.mu);
-    for found in &analysis.equivalence {
-        let bounds = match found.bounds {
-            Bounds::Points(points) => format!("±{points} choices"),
-            Bounds::Sd(sd) => format!("±{sd} SD"),
-        };
-        let name = format!("mean − chance, equivalent within {bounds}? (choices)");
-        let row = offset.map(|x| rows("equivalence (TOST)").number(name, x, 4));
-        all.extend(row.map(|row| {
-            row.within(found.interval_90)
-                .with_p(found.p)
-                .noted("p below 0.05 shows equivalence; 90% interval")
-        }));
+    if let (Some(found), Some(mean)) = (&analysis.equivalence, summary.mean) {
+        let items = summary.items as f64;
+        let name = format!("share − ½, equivalent within ±{}? (proportion)", found.within);
+        let Interval { low, high, level } = found.tests.interval_90;
+        let row =
+            rows("equivalence (TOST)").number(name, (mean - summary.mu) / items, 4).with_p(found.tests.p);
+        let row = row.within(Interval { low: low / items, high: high / items, level });
+        all.push(row.noted("p below 0.05 shows equivalence; 90% interval"));
     }
     if let Some(bayes) = &analysis.bayes {
         let row = rows("Bayes factor").number("BF₀₁, for no effect against one (ratio)", bayes.bf01, 2);
@@ -247,13 +270,8 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
 
     let choices = rows("all choices");
     if let Some(share) = &analysis.proportion {
-        let by_participant = if share.by_participant.is_some() {
-            "interval from resampled participants; n: choices"
-        } else {
-            "n: choices"
-        };
-        all.push(choices.share(format!("share of {target} (proportion)"), share).noted(by_participant));
-        if share.by_participant.is_some() && summary.items > 1 {
+        all.push(choices.share(format!("share of {target} (proportion)"), share));
+        if share.participants < share.trials {
             let row = choices
                 .number("the same, Wilson's interval (proportion)", share.proportion, 3)
                 .within(share.wilson);
@@ -307,12 +325,18 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         Role::Left | Role::Right => ("share of the left picture (proportion)", "a bias of side"),
         Role::First | Role::Second => ("share of the first interval (proportion)", "a bias of order"),
     };
-    all.extend(
-        block
-            .first
-            .as_ref()
-            .map(|first| rows("sides").share(what, first).noted(format!("n: choices; far from 0.5: {bias}"))),
-    );
+    all.extend(block.first.as_ref().map(|first| {
+        let row = rows("sides").share(what, first);
+        let note = format!("{}; far from 0.5: {bias}", row.note);
+        row.noted(note)
+    }));
+    if let Some(found) = &block.first_intraclass {
+        let row = rows("sides").number("intraclass correlation of sides (−1 to 1)", found.icc, 3);
+        all.push(row.of_n(
+            found.participants,
+            "above 0, some participants lean one way and some the other, which cancels in the share",
+        ));
+    }
     if let Some(times) = &block.rt_ms {
         let row = rows("response time");
         for (name, ms) in [
@@ -353,20 +377,38 @@ pub(crate) fn psychometric(sample: Sample, block: &str, found: &PsychometricRepo
     all.push(posterior(format!("width, F = 5% to 95% ({unit})"), &fit.width));
     all.push(posterior("lapse rate (proportion)".to_owned(), &fit.lapse));
     all.push(posterior("overdispersion η (0 to 1)".to_owned(), &fit.eta));
-    if let Some(b) = &fit.threshold_by_participant {
+    if let Some(found) = &fit.threshold_by_participant {
+        let b = &found.bootstrap;
         let row = rows.number(format!("threshold, maximum likelihood ({unit})"), b.estimate, 4);
-        all.push(row.within(resampled(b)).noted("interval from resampled participants"));
+        let note = match found.at_bound {
+            0 => "interval from resampled participants".to_owned(),
+            n => format!(
+                "interval from resampled participants; {n} of {} resamples ended on the edge of the range searched",
+                b.replicates
+            ),
+        };
+        all.push(row.within(resampled(b)).noted(note));
     }
     for at in &fit.at {
         let name = format!("level at a share of {} ({unit})", at.share);
-        let interval = at.low.zip(at.high).map(|(low, high)| Interval { low, high, level: LEVEL });
-        all.extend(
-            at.level
-                .map(|level| Number { interval, ..rows.number(name, level, 4) }.noted("posterior interval")),
-        );
+        // What no level reaches is beyond all of them.
+        let interval = Interval {
+            low: at.low.unwrap_or(f64::NEG_INFINITY),
+            high: at.high.unwrap_or(f64::INFINITY),
+            level: LEVEL,
+        };
+        let reached = if at.level.is_some() { "" } else { "; the curve itself never reaches this share" };
+        let note = match (at.low, at.high) {
+            (Some(_), Some(_)) => format!("posterior interval{reached}"),
+            (None, None) => format!("posterior interval: both ends are beyond every level{reached}"),
+            (None, _) => format!("posterior interval; its lower end is beyond every level{reached}"),
+            (_, None) => format!("posterior interval; its upper end is beyond every level{reached}"),
+        };
+        all.push(Number { value: at.level, ..rows.number(name, f64::NAN, 4) }.within(interval).noted(note));
     }
     if let Some(goodness) = &fit.goodness {
         let row = rows.number("deviance", goodness.deviance, 3).with_p(goodness.p_simulated);
+        let row = row.resolved_to(Some(1.0 / (1.0 + goodness.simulations as f64)));
         all.push(row.of_n(goodness.simulations as u64, "n: simulated observers"));
     }
     all
@@ -375,20 +417,32 @@ pub(crate) fn psychometric(sample: Sample, block: &str, found: &PsychometricRepo
 /// Every number of a scale.
 pub(crate) fn of_scale(sample: Sample, found: &ScaleIntervals) -> Vec<Number> {
     let rows = Rows::of(sample, "", "scale");
-    let within = |low, high| Interval { low, high, level: found.level };
+    let within = |low: Option<f64>, high: Option<f64>| {
+        low.zip(high).map(|(low, high)| Interval { low, high, level: found.level })
+    };
     let observers = Some(found.observers as u64);
     let mut all: Vec<Number> = found
         .conditions
         .iter()
-        .map(|c| Number {
-            n: observers,
-            ..rows.number(format!("{} (JOD)", c.condition), c.jod, 3).within(within(c.low, c.high))
+        .map(|c| {
+            let row = rows.number(format!("{} (JOD)", c.condition), c.jod, 3);
+            Number { n: observers, interval: within(c.low, c.high), ..row }
         })
         .collect();
-    all.extend(found.differences.iter().map(|d| {
+    for d in &found.differences {
         let row = rows.named("scale, differences").number(format!("{} − {} (JOD)", d.a, d.b), d.jod, 3);
-        row.within(within(d.low, d.high)).with_p(d.p).noted("p not corrected for the number of differences")
-    }));
+        let row = Number { interval: within(d.low, d.high), ..row };
+        let patterns = if d.p_exact {
+            "all patterns of signs".to_owned()
+        } else {
+            count(found.flips as u64, "random pattern")
+        };
+        let floor = (!d.p_exact).then_some(d.p_smallest);
+        all.push(row.with_p(d.p).resolved_to(floor).noted(format!("sign flips of participants, {patterns}")));
+        let corrected = format!("{} − {}, p corrected by Holm for all differences (JOD)", d.a, d.b);
+        let row = rows.named("scale, differences").number(corrected, d.jod, 3).with_p(d.p_holm);
+        all.push(row);
+    }
     let fit = &found.scale;
     if fit.deviance_df > 0 {
         let row =

@@ -1,9 +1,9 @@
 //! The paper that a study repeats, beside the study's own results.
 
-use crate::StudyReport;
 use crate::document::{Cell, Piece, Row, Section, Table};
 use crate::format::{MISSING, fixed, p_value, range, significant};
-use kelir_stats::paper::Replication;
+use crate::{StudyReport, figures};
+use kelir_stats::paper::{Comparison, Replication};
 
 /// The paper's own tests beside this study's.
 pub(crate) fn section(report: &StudyReport) -> Option<Section> {
@@ -53,7 +53,9 @@ pub(crate) fn section(report: &StudyReport) -> Option<Section> {
         ),
         Piece::Table(Table::new("", &columns, rows)),
         Piece::Table(beyond_the_test(paper)),
+        Piece::Table(equivalence(paper)),
     ];
+    pieces.extend(paper.comparisons.iter().map(figures::equivalence));
     for theirs in paper.comparisons.iter().filter(|c| !c.t_as_printed) {
         let (from, to) = paper.printed_t.participants;
         pieces.push(Piece::Warning(format!(
@@ -75,13 +77,34 @@ fn beyond_the_test(paper: &Replication) -> Table {
             Cell::text(chosen.join(", ")),
             Cell::number(fixed(theirs.printed.mean, 3), theirs.printed.mean),
             Cell::number(fixed(theirs.printed.sd, 3), theirs.printed.sd),
-            Cell::number(p_value(theirs.equivalence_points.p), theirs.equivalence_points.p),
-            Cell::number(p_value(theirs.equivalence_sd.p), theirs.equivalence_sd.p),
             Cell::number(significant(theirs.bayes.bf01, 3), theirs.bayes.bf01),
         ])
     });
-    let columns = ["comparison", "chose PA", "mean#", "SD#", "p within ±0.5#", "p within ±0.5 SD#", "BF₀₁#"];
-    let caption = "The paper's counts (how often PA was chosen: by how many participants), its printed means and standard deviations, and what the counts \
-         say of equivalence within ±0.5 choices and ±0.5 SD (p of two one-sided tests) and for no effect (JZS Bayes factor).";
+    let columns = ["comparison", "chose PA", "mean#", "SD#", "BF₀₁#"];
+    let caption = "The paper's counts (how often PA was chosen: by how many participants), its printed means and standard deviations, and how much likelier \
+         the counts are under no effect (JZS Bayes factor).";
+    Table::new(caption, &columns, rows.collect())
+}
+
+/// Every so many of the bounds that were tried stand in the table; the figures have all.
+const TABLED: usize = 5;
+
+/// The tests of equivalence by their bound: the paper states none, and what the counts show depends on it.
+fn equivalence(paper: &Replication) -> Table {
+    let bounds = paper.comparisons.first().map_or(0, |c| c.equivalence.len());
+    let rows = (TABLED - 1..bounds).step_by(TABLED).map(|k| {
+        let of = |c: &Comparison| c.equivalence[k].tests.p;
+        let bound = paper.comparisons[0].equivalence[k].within;
+        let cells = paper.comparisons.iter().map(|c| Cell::number(p_value(of(c)), of(c)));
+        Row::Cells(
+            std::iter::once(Cell::number(format!("±{}", fixed(bound, 2)), bound)).chain(cells).collect(),
+        )
+    });
+    let columns: Vec<String> = std::iter::once("bound on the share#".to_owned())
+        .chain(paper.comparisons.iter().map(|c| format!("{}#", c.title)))
+        .collect();
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let caption = "p of the two one-sided tests that PA's share is equivalent to a half, by how far from a half it may lie; at ±0.5 any share is. Below 0.05 \
+         equivalence is shown.";
     Table::new(caption, &columns, rows.collect())
 }

@@ -100,7 +100,7 @@ fn participants(report: &StudyReport) -> Section {
                 Row::Cells(vec![Cell::text(&excluded.session_id), Cell::text(&excluded.why)])
             });
         let caption = format!(
-            "{} excluded by the study's rules, which were stated before there were answers.",
+            "{} excluded by the study's rules, which are part of the version that was answered.",
             count(report.excluded.len() as u64, "participant")
         );
         pieces.push(Piece::Table(Table::new(caption, &["session", "reason"], rows.collect())));
@@ -222,7 +222,8 @@ fn scale(report: &StudyReport) -> Option<Section> {
         let note = judged.scale_note.as_ref().filter(|_| names.len() > 2 && !report.is_empty())?;
         return Some(Section::new(title, vec![Piece::Text(note.clone())]));
     };
-    let mut pieces = Vec::new();
+    let mut pieces = vec![Piece::Text(judged.scale_pools.clone())];
+    pieces.extend(found.note.clone().map(Piece::Warning));
     pieces.extend(figures::scale(report));
     if found.scale.deviance_df > 0 && found.scale.deviance_p < 0.05 {
         pieces.push(Piece::Warning(
@@ -296,7 +297,10 @@ fn errors(report: &StudyReport) -> Option<Section> {
             if j.error.own { condition.noted("error: its own standard error") } else { condition },
             Cell::number(significant(j.error.rms, 3), j.error.rms),
             j.error.floor.map_or_else(Cell::default, |floor| Cell::number(significant(floor, 3), floor)),
-            Cell::estimate(share(j.share, j.interval), j.share, j.interval.low, j.interval.high),
+            match j.interval {
+                Some(i) => Cell::estimate(share(j.share, Some(i)), j.share, i.low, i.high),
+                None => Cell::number(share(j.share, None), j.share),
+            },
         ])
     });
     let columns =

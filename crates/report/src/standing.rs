@@ -41,6 +41,8 @@ pub struct Standing {
     pub summary: String,
     /// Participants whose answers are judged.
     pub judged: u64,
+    /// Participants in progress who are judged only once they finish.
+    pub unfinished: u64,
     /// Sessions of persons whose first complete session counts.
     pub repeated: Vec<Repeated>,
     /// Trial runs of researchers, left out.
@@ -79,6 +81,7 @@ impl Standing {
         Standing {
             summary: String::new(),
             judged: judged.judged.len() as u64,
+            unfinished: judged.left_out.iter().filter(|(_, why)| *why == LeftOut::InProgress).count() as u64,
             repeated: repeated.collect(),
             pilots: kind(SessionKind::Pilot),
             simulated: kind(SessionKind::Simulated),
@@ -115,7 +118,11 @@ impl Standing {
             parts.push("none finished yet".to_owned());
         }
         if people.in_progress > 0 {
-            parts.push(format!("{} in progress", people.in_progress));
+            let until = match self.unfinished {
+                0 => String::new(),
+                n => format!(" ({n} judged only once they finish)"),
+            };
+            parts.push(format!("{} in progress{until}", people.in_progress));
         }
         if !excluded.is_empty() {
             let completed = excluded.iter().filter(|one| one.is_completed).count();
@@ -125,7 +132,7 @@ impl Standing {
             };
             parts.push(format!("{} left out by your rules{of_these}", excluded.len()));
         }
-        if !excluded.is_empty() || !self.repeated.is_empty() {
+        if !excluded.is_empty() || !self.repeated.is_empty() || self.unfinished > 0 {
             parts.push(format!("{} judged", self.judged));
         }
         let mut sentences = vec![format!("{}.", parts.join(", "))];
@@ -229,6 +236,11 @@ mod tests {
         assert_eq!(
             said(4, 1, 2, &one, &[true, false]),
             "4 began, 2 completed, 1 in progress, 2 left out by your rules (1 of them completed), 1 judged. 1 trial run is left out."
+        );
+        let going_on = Standing { judged: 1, unfinished: 2, ..Standing::default() };
+        assert_eq!(
+            said(4, 2, 1, &going_on, &[]),
+            "4 began, 1 completed, 2 in progress (2 judged only once they finish), 1 judged."
         );
         let again = Repeated { session_id: "2".into(), counted: "1".into() };
         let repeats =

@@ -6,8 +6,8 @@ use utoipa::ToSchema;
 
 use crate::Result;
 use crate::inference::{
-    BinomialTest, Bounds, EffectSize, Equivalence, JzsBayesFactor, ORDINARY_PRIOR_SCALE, SignedRank, TPlan,
-    TTest, detectable_effect_t, effect_size, equivalence, holm, jzs_bayes_factor, power_t, sign_test,
+    BinomialTest, EffectSize, JzsBayesFactor, ORDINARY_PRIOR_SCALE, ShareEquivalence, SignedRank, TPlan,
+    TTest, detectable_effect_t, effect_size, holm, jzs_bayes_factor, power_t, share_equivalence, sign_test,
     t_test_from_counts, wilcoxon_signed_rank,
 };
 
@@ -44,10 +44,8 @@ pub struct Comparison {
     pub p_holm: f64,
     /// Effect size with 95% intervals.
     pub effect: EffectSize,
-    /// Equivalent within ± half a point of the mean number chosen?
-    pub equivalence_points: Equivalence,
-    /// Equivalent within ± half a standard deviation?
-    pub equivalence_sd: Equivalence,
+    /// Is the share of PA images chosen equivalent to one half? The paper states no bound: by a range of them, rising.
+    pub equivalence: Vec<ShareEquivalence>,
     /// Evidence for no effect against an effect.
     pub bayes: JzsBayesFactor,
     /// Sign test of the same hypothesis, without assuming normality.
@@ -59,6 +57,9 @@ pub struct Comparison {
     /// The effect that would be found with a probability of 80%.
     pub detectable: TPlan,
 }
+
+/// The bounds that are tried, in hundredths: up to the whole scale, which proves nothing, and no further.
+const BOUNDS: std::ops::Range<u32> = 1..50;
 
 /// A split of binary answers and its t.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
@@ -142,7 +143,8 @@ impl Source {
     fn compare(&self) -> Result<Comparison> {
         let counts = table(self.counts);
         // By chance half of the pairs.
-        let mu = (self.counts.len() - 1) as f64 / 2.0;
+        let pairs = self.counts.len() as u32 - 1;
+        let mu = f64::from(pairs) / 2.0;
         let test = t_test_from_counts(&counts, mu)?;
         let values: Vec<f64> =
             counts.iter().flat_map(|&(value, count)| std::iter::repeat_n(value, count as usize)).collect();
@@ -158,8 +160,9 @@ impl Source {
             t_as_printed: rounds_to(test.t, self.printed.t),
             p_holm: test.p,
             effect: effect_size(&test, 0.95)?,
-            equivalence_points: equivalence(&test, Bounds::Points(0.5))?,
-            equivalence_sd: equivalence(&test, Bounds::Sd(0.5))?,
+            equivalence: BOUNDS
+                .map(|hundredths| share_equivalence(&test, pairs, f64::from(hundredths) / 100.0))
+                .collect::<Result<_>>()?,
             bayes: jzs_bayes_factor(&test, ORDINARY_PRIOR_SCALE)?,
             sign: sign_test(&values, mu)?,
             wilcoxon: wilcoxon_signed_rank(&values, mu)?,
@@ -251,8 +254,13 @@ mod tests {
         close(photo.test.p, 2.03782e-4, 5e-10);
         close(video.test.t, -3.983482, 5e-7);
         close(video.test.p, 3.66864e-4, 5e-10);
-        close(mc.equivalence_points.p, 0.0114, 5e-5);
-        close(mc.equivalence_sd.p, 0.087, 5e-4);
+        // Half a choice of two pairs is a quarter of the share.
+        let within =
+            |c: &Comparison, share: f64| c.equivalence.iter().find(|e| e.within == share).unwrap().tests.p;
+        close(within(mc, 0.25), 0.0114, 5e-5);
+        // The curve falls as the bound grows, and what differs significantly is equivalent within no bound that a reader would take.
+        assert!(mc.equivalence.windows(2).all(|two| two[0].tests.p > two[1].tests.p));
+        assert!(within(video, 0.25) > 0.5 && within(photo, 0.2) > 0.5);
         close(mc.bayes.bf01, 2.1, 0.05);
         close(mc.effect.g, -0.248, 5e-4);
         close(mc.effect.g_interval.low, -0.590, 5e-4);

@@ -48,6 +48,9 @@ pub struct StudyDefinition {
     /// Rules of exclusion, stated before there are results.
     #[serde(default, skip_serializing_if = "is_default")]
     pub screening: Screening,
+    /// How far from one half a share may lie and still count as equivalent to it; absent: nothing is tested for equivalence.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub equivalence: Option<EquivalenceBound>,
     /// Whose defaults the file has; files without one have the first's.
     #[serde(default = "first_edition", skip_serializing_if = "is_first_edition")]
     pub edition: u32,
@@ -181,6 +184,9 @@ pub struct Psychometric {
     pub lapse: Lapse,
     /// Shares of target choices, between ½ and 1, whose levels are wanted.
     pub thresholds: Vec<f64>,
+    /// Whether the t-test of the block's counts is planned too, beside its thresholds.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub t_test: bool,
 }
 
 /// Which way a psychometric function runs.
@@ -244,6 +250,15 @@ pub struct Screening {
     /// What excludes the participant where it was noticed of the session.
     #[serde(default, skip_serializing_if = "is_default")]
     pub flags: Vec<Flag>,
+}
+
+/// How far from one half a block's share of target choices may lie and still count as equivalent to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct EquivalenceBound {
+    /// Half the width of the range about ½, as a share of choices, above 0 and below ½.
+    pub within: f64,
+    /// Why a smaller difference does not matter.
+    pub reason: String,
 }
 
 /// A key of the file that is no part of what it says: all are equal.
@@ -318,6 +333,12 @@ impl Block {
     /// The most trials that a participant can see of it.
     pub fn most_trials(&self) -> usize {
         self.adaptive.as_ref().map_or(self.items.len(), Adaptive::most_trials)
+    }
+
+    /// Whether a t-test of its counts is planned: what catches inattention and what a procedure steers has none, and a block with a psychometric
+    /// function only where the file says so.
+    pub fn plans_t_test(&self) -> bool {
+        !self.catch && self.adaptive.is_none() && self.psychometric.as_ref().is_none_or(|p| p.t_test)
     }
 
     /// The condition that is not the target.

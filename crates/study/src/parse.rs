@@ -11,7 +11,7 @@ mod texts;
 
 use self::texts::{QUESTION, TITLE};
 use crate::conduct::{NEWEST_EDITION, ResponseRules, SessionRules};
-use crate::definition::{Block, Screening, StudyDefinition};
+use crate::definition::{Block, EquivalenceBound, Screening, StudyDefinition};
 use crate::fields::{IDENTIFIER, SECTION, identifier, integer, number, text};
 use crate::visits::Flag;
 use kelir_reader::{Fields, Node, Problem, Problems, Reading, Source};
@@ -76,6 +76,7 @@ fn read_study(source: &Source, file: &str, root: &Node) -> Option<StudyDefinitio
     let session = SessionRules::read(&mut fields);
     let completion = completion::read(&mut fields, session.as_ref(), edition);
     let screening = read_screening(&mut fields);
+    let equivalence = read_equivalence(&mut fields);
     let texts = texts::read(&mut fields);
     let language = languages::read_own(&mut fields);
     let translations = languages::read_translations(&mut fields, language.as_deref());
@@ -97,6 +98,7 @@ fn read_study(source: &Source, file: &str, root: &Node) -> Option<StudyDefinitio
         conditions,
         blocks: blocks.into_iter().map(|read| read.block).collect(),
         screening: screening.unwrap_or_default(),
+        equivalence,
         edition: u32::try_from(edition?).ok()?,
         response: response?,
         session: session?,
@@ -130,6 +132,16 @@ fn read_screening(fields: &mut Fields<'_>) -> Option<Screening> {
         incomplete: incomplete.unwrap_or(false),
         flags: flags.unwrap_or_default(),
     })
+}
+
+fn read_equivalence(fields: &mut Fields<'_>) -> Option<EquivalenceBound> {
+    let mut fields = fields.given("equivalence", SECTION)?.table()?;
+    let rule = "a share of choices above 0 and below 0.5: from one half minus it to one half plus it";
+    let within = fields.must("within", rule, |v| number(v, 0.0, 0.5).filter(|x| *x > 0.0 && *x < 0.5));
+    let rule = "why a smaller difference does not matter, a text of 1 to 1000 characters";
+    let reason = fields.must("reason", rule, |v| text(v, 1000));
+    fields.done();
+    Some(EquivalenceBound { within: within?, reason: reason? })
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ const SAMPLE: &str = r#"
 [session]
 [completion]
 [screening]
+[equivalence]
 [texts]
 [translations.TAG]
 texts = {}

@@ -41,7 +41,9 @@ pub(crate) fn run(args: Args) -> Result<()> {
 
 fn comparison(c: &Comparison) -> String {
     let counts: Vec<String> = c.counts.iter().map(|(value, n)| format!("{n} chose {value}")).collect();
-    let (t, e, points, sd) = (&c.test, &c.effect, &c.equivalence_points, &c.equivalence_sd);
+    let (t, e) = (&c.test, &c.effect);
+    let bounds = c.equivalence.iter().skip(4).step_by(5);
+    let equivalence: Vec<String> = bounds.map(|e| format!("±{:.2}: {:.4}", e.within, e.tests.p)).collect();
     let agrees = if c.t_as_printed { "as printed" } else { "not what is printed" };
     let power: Vec<String> =
         c.power.iter().map(|plan| format!("{:.2} for d = {}", plan.power, plan.d)).collect();
@@ -50,7 +52,7 @@ fn comparison(c: &Comparison) -> String {
          counts           {} (tables that round to the printed mean and sd: {})\n  \
          t-test           mean {:.4}, sd {:.4}, t = {:.6} ({agrees}), df = {}, p = {:.5e}; Holm-corrected p = {:.4e}\n  \
          effect           d = {:.3} [{:.3}, {:.3}], g = {:.3} [{:.3}, {:.3}]\n  \
-         equivalence      p = {:.4} within ±{:.3} points, p = {:.4} within ±½ sd ({:.3})\n  \
+         equivalence      p by the bound on the share: {}\n  \
          Bayes factor     BF01 = {:.3}, BF10 = {:.3} (JZS, r = {:.3})\n  \
          without normality  sign test p = {:.4}, Wilcoxon p = {:.4}\n  \
          power at n = {:<4} {}; 80% for d = {:.3}",
@@ -72,10 +74,7 @@ fn comparison(c: &Comparison) -> String {
         e.g,
         e.g_interval.low,
         e.g_interval.high,
-        points.p,
-        points.half_width,
-        sd.p,
-        sd.half_width,
+        equivalence.join(", "),
         c.bayes.bf01,
         c.bayes.bf10,
         c.bayes.prior_scale,

@@ -1,6 +1,8 @@
 //! `kelir power --design FILE`: how many participants a study needs.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use kelir_house::shipped::{Shipped, is_file};
@@ -24,10 +26,32 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<()> {
     let design = read(&args.design)?;
     let bar = progress::bar(design.simulations, "simulated studies");
-    let found = power(&design, &|done| bar.set_position(done));
+    let (begun, due) = (Instant::now(), Mutex::new(FIRST_ANSWER));
+    let found = power(&design, threads(), &|done, so_far| {
+        bar.set_position(done);
+        let mut due = due.lock().unwrap_or_else(PoisonError::into_inner);
+        if begun.elapsed() > *due && done < design.simulations {
+            *due = 2 * begun.elapsed();
+            bar.suspend(|| eprintln!("{}\n", interim(&so_far(), design.simulations)));
+        }
+    });
     bar.finish_and_clear();
     args.figures.give(&found)?;
     args.figures.say(&text(&found))
+}
+
+/// When the answer so far is told for the first time; then each time that it has cost twice as much.
+const FIRST_ANSWER: Duration = Duration::from_secs(2);
+
+fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// The answer so far.
+fn interim(found: &Power, of: u64) -> String {
+    let needed =
+        needed(found).unwrap_or_else(|| "Nothing of what is asked for is there to be found.".to_owned());
+    format!("After {} of {of} simulated studies of each size:\n{needed}", found.simulations)
 }
 
 fn read(argument: &Path) -> Result<Design> {
@@ -114,17 +138,23 @@ fn text(found: &Power) -> String {
         aligned(&header(&["of", "interval", "truth"]), &rows)
     ));
 
-    if !found.needed.is_empty() {
-        let most = found.sizes.last().map_or(0, |size| size.participants);
-        let rows: Vec<Vec<String>> = found.needed.iter().map(|needed| row(needed, most)).collect();
-        parts.push(format!(
-            "Fewest participants, of those tried, with a power of {} (95% interval of the simulation)\n{}",
-            found.power,
-            aligned(&["of", "test", "participants", "power there"].map(str::to_owned), &rows)
-        ));
-    }
+    parts.extend(needed(found));
     parts.extend(warning(found));
     parts.join("\n\n")
+}
+
+/// How many participants it takes; `None` where nothing is there to be found.
+fn needed(found: &Power) -> Option<String> {
+    if found.needed.is_empty() {
+        return None;
+    }
+    let most = found.sizes.last().map_or(0, |size| size.participants);
+    let rows: Vec<Vec<String>> = found.needed.iter().map(|needed| row(needed, most)).collect();
+    Some(format!(
+        "Fewest participants, of those tried, with a power of {} (95% interval of the simulation)\n{}",
+        found.power,
+        aligned(&["of", "test", "participants", "power there"].map(str::to_owned), &rows)
+    ))
 }
 
 fn aligned(header: &[String], rows: &[Vec<String>]) -> String {

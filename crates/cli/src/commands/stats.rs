@@ -46,10 +46,10 @@ enum Test {
     /// Two-sided one-sample t-test of a table of counts.
     Ttest {
         /// VALUE:HOW-OFTEN pairs, as in 0:12,1:14,2:6.
-        #[arg(long, value_parser = parse_counts)]
+        #[arg(long, value_parser = parse_counts, allow_hyphen_values = true)]
         counts: Counts,
         /// The mean under the null hypothesis.
-        #[arg(long)]
+        #[arg(long, allow_negative_numbers = true)]
         mu: f64,
         #[command(flatten)]
         printed: Printed,

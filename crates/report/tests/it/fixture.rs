@@ -17,6 +17,8 @@ pub(crate) struct Study {
     pub question: String,
     pub block_title: String,
     pub screening: String,
+    /// The bound of equivalence on the share; empty for none.
+    pub within: String,
     pub blocks: String,
     pub people: Vec<Vec<(&'static str, &'static str, f64)>>,
 }
@@ -56,6 +58,7 @@ impl Default for Study {
             question: "Which is real?".to_owned(),
             block_title: "Stills".to_owned(),
             screening: String::new(),
+            within: String::new(),
             blocks: BLOCKS.to_owned(),
             people: Vec::new(),
         }
@@ -137,7 +140,7 @@ impl Study {
         let quoted = |text: &str| serde_json::to_string(&plain(text)).unwrap();
         let photo =
             if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
-        let keys = [
+        let mut keys = vec![
             ("title", &*quoted(&self.title)),
             ("question", &quoted(&self.question)),
             ("seed", "11"),
@@ -147,6 +150,10 @@ impl Study {
             ),
             ("screening", &format!("{{ {} }}", self.screening)),
         ];
+        let within = format!("{{ within = {}, reason = \"Less would change nothing.\" }}", self.within);
+        if !self.within.is_empty() {
+            keys.push(("equivalence", &within));
+        }
         let toml = fixtures::study(&keys, [self.blocks.replace("TITLE", &quoted(&self.block_title))]);
         let mut design =
             StudyDefinition::parse("studies/shadows.toml", &toml).unwrap_or_else(|e| panic!("{e}"));

@@ -81,8 +81,7 @@ fn every_form_says_the_same() {
     let (page, plain, table) = (html(&document), text(&document), csv(&report));
     let md = markdown(&document, &Figures::Folder("report-figures".to_owned()));
     // What is shown of t and p, rounded here by hand from R's digits.
-    for shown in ["−1.4376", "0.1606", "4.2088", "2.04 × 10⁻⁴", "−3.9835", "3.67 × 10⁻⁴", "0.0114", "0.0871"]
-    {
+    for shown in ["−1.4376", "0.1606", "4.2088", "2.04 × 10⁻⁴", "−3.9835", "3.67 × 10⁻⁴"] {
         for form in [&page, &plain, &md.text] {
             assert!(form.contains(shown), "{shown} is not in {form}");
         }
@@ -116,10 +115,15 @@ fn every_form_says_the_same() {
 
 #[test]
 fn the_headline_says_what_was_and_what_was_not_shown() {
-    let page = text(&Document::of(&paper([[12, 14, 6], [3, 10, 19], [26, 7, 0]]).report()));
-    let one_line = page.split_whitespace().collect::<Vec<_>>().join(" ");
-    let (found, rest) = one_line.split_once("Not shown:").unwrap();
-    let not_shown = rest.split("Participants").next().unwrap();
+    let headline = |counts, within: &str| {
+        let study = Study { within: within.to_owned(), ..paper(counts) };
+        let page = text(&Document::of(&study.report()));
+        let one_line = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        let (found, rest) = one_line.split_once("Not shown:").unwrap();
+        (found.to_owned(), rest.split("Participants ─").next().unwrap().to_owned())
+    };
+    let counts = [[12, 14, 6], [3, 10, 19], [26, 7, 0]];
+    let (found, not_shown) = headline(counts, "");
     assert!(
         found.contains("not significantly different from half the time, t(31) = −1.438, p = 0.1606"),
         "{found}"
@@ -128,23 +132,33 @@ fn the_headline_says_what_was_and_what_was_not_shown() {
         found.contains("more often than half the time, t(31) = 4.209")
             && found.contains("less often than half the time, t(32)")
     );
-    assert!(not_shown.contains("equivalence within ±0.5 choices is shown (p = 0.0114)"), "{not_shown}");
     assert!(
-        not_shown.contains("within ±0.5 SD is not (p = 0.0871)")
-            && not_shown.contains("2.1 times likelier under no effect")
+        not_shown.contains("the study file states no bound within which a share would count"),
+        "{not_shown}"
     );
+    assert!(not_shown.contains("2.1 times likelier under no effect"), "{not_shown}");
     assert!(not_shown.contains("below d = 0.51 is missed"), "{not_shown}");
     assert_eq!(
         not_shown.matches("participants cannot tell").count(),
         1,
         "the other two blocks did show a difference"
     );
-
-    // Equivalent within both bounds: found, not among what is not shown.
-    let alike = text(&Document::of(&paper([[20, 60, 20], [3, 10, 19], [26, 7, 0]]).report()));
-    let one_line = alike.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(one_line.contains("and equivalent to it within both bounds asked for"), "{one_line}");
-    assert!(!one_line.contains("participants cannot tell"));
+    // Within a tenth of the share the same counts show nothing.
+    let (_, not_shown) = headline(counts, "0.1");
+    assert!(not_shown.contains("within the study's bound of ±0.1 on the share is not shown"), "{not_shown}");
+    // Half a choice of two is a quarter of the share: the first block is equivalent within that, which is found and not among what is not shown.
+    let (found, not_shown) = headline(counts, "0.25");
+    assert!(
+        found.contains("equivalent to it within the study's bound of ±0.25 on the share, p = 0.0114"),
+        "{found}"
+    );
+    assert!(!not_shown.contains("participants cannot tell"), "{not_shown}");
+    // What is not defined is not shown either, and stays in the list.
+    let (_, not_shown) = headline([[0, 0, 32], [3, 10, 19], [26, 7, 0]], "0.1");
+    assert!(
+        not_shown.contains("Stills: whether participants can tell pa from mc, by the planned t-test: all participants chose the same number"),
+        "{not_shown}"
+    );
 }
 
 #[test]

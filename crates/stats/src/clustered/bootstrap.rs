@@ -47,7 +47,7 @@ pub struct Bootstrap {
 ///
 /// `participants`: one item each, with everything that participant answered. `statistic` returns `None` where it is undefined.
 /// Errors: fewer than two participants, fewer than [`MIN_REPLICATES`] replicates, a level outside (0, 1), a statistic undefined on the
-/// sample itself or on more than half of the resamples. Source: Davison & Hinkley (1997), ch. 3.8 and 5.3.
+/// sample itself or on more than half of the resamples, resamples that all agree. Source: Davison & Hinkley (1997), ch. 3.8 and 5.3.
 pub fn bootstrap<T>(
     participants: &[T],
     replicates: usize,
@@ -85,6 +85,12 @@ pub fn bootstrap<T>(
         });
     }
     values.sort_by(f64::total_cmp);
+    if values[0] == values[values.len() - 1] {
+        return Err(StatsError::NoSolution {
+            what: "the bootstrap interval",
+            reason: "all resamples agree, which tells how few participants there are and not how far others would differ",
+        });
+    }
 
     let tail = (1.0 - level) / 2.0;
     let (low, high) = match method {
@@ -113,7 +119,7 @@ pub fn bootstrap<T>(
     })
 }
 
-pub(crate) fn check_replicates(replicates: usize) -> Result<()> {
+fn check_replicates(replicates: usize) -> Result<()> {
     if replicates < MIN_REPLICATES {
         let rule = "must be at least 2000";
         return Err(StatsError::Invalid { name: "replicates", value: replicates as f64, rule });
@@ -149,7 +155,7 @@ pub(crate) fn quantile(sorted: &[f64], p: f64) -> f64 {
     sorted[i] + (at - i as f64) * (next - sorted[i])
 }
 
-pub(crate) fn standard_deviation(values: &[f64]) -> f64 {
+fn standard_deviation(values: &[f64]) -> f64 {
     if values.len() < 2 {
         return 0.0;
     }

@@ -133,7 +133,7 @@ pub struct IndependenceWarning {
     pub icc: Option<f64>,
     /// Variance inflation of the pooled proportion, when it is defined.
     pub design_effect: Option<f64>,
-    /// trials / `design_effect`: how many independent trials the data are worth.
+    /// trials / `design_effect`, never above `trials`: how many independent trials the data are worth.
     pub effective_trials: Option<f64>,
     /// One plain sentence for a report.
     pub message: String,
@@ -150,17 +150,22 @@ pub fn independence_warning(clusters: &[Cluster]) -> Result<Option<IndependenceW
     let found = intraclass(&clusters, IccEstimator::FleissCuzick).ok();
     let trials: u64 = clusters.iter().map(|c| c.trials).sum();
     let participants = clusters.len() as u64;
-    let effective = found.as_ref().map(|f| trials as f64 / f.design_effect).filter(|n| n.is_finite());
+    // Answers that alternate more than chance would are no proof of more answers than there are.
+    let effective = found.as_ref().map(|f| trials as f64 / f.design_effect.max(1.0));
     let mut message = format!(
         "This test counts {trials} trials as independent, but they are the answers of {participants} participants"
     );
-    match (&found, effective) {
-        (Some(f), Some(n)) => message.push_str(&format!(
-            " (intraclass correlation {:.3}): they are worth about {n:.0} independent trials. Use a test over participants.",
+    let worth = match (&found, effective) {
+        (Some(f), _) if f.design_effect < 1.0 => format!(
+            " (intraclass correlation {:.3}: one participant's answers alternate rather than repeat, which may be chance)",
             f.icc
-        )),
-        _ => message.push_str(". Use a test over participants."),
-    }
+        ),
+        (Some(f), Some(n)) => {
+            format!(" (intraclass correlation {:.3}): they are worth about {n:.0} independent trials", f.icc)
+        }
+        _ => String::new(),
+    };
+    message.push_str(&format!("{worth}. Use a test over participants."));
     Ok(Some(IndependenceWarning {
         participants,
         trials,

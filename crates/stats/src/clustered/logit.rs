@@ -88,7 +88,8 @@ pub struct RobustLogit {
 /// Logistic regression by maximum likelihood with the cluster-robust (sandwich) covariance of Liang & Zeger (1986).
 ///
 /// Assumes independent participants, any dependence within; asymptotic in participants (below 30, read p with care).
-/// Errors: malformed rows, fewer than two participants, collinear predictors, separated choices.
+/// Errors: malformed rows, fewer than two participants, collinear predictors, separated choices, participants who all fit alike (the
+/// sandwich is then 0, which is no certainty).
 pub fn robust_logit(rows: &[Row], correction: Correction) -> Result<RobustLogit> {
     let (rows, p) = checked(rows)?;
     let fit = plain(&rows, p)?;
@@ -126,10 +127,17 @@ pub fn robust_logit(rows: &[Row], correction: Correction) -> Result<RobustLogit>
                 .flat_map(|a| (0..p).map(move |b| (a, b)))
                 .map(|(a, b)| bread[i * p + a] * meat[a * p + b] * bread[b * p + i])
                 .sum();
-            let se = (factor * variance.max(0.0)).sqrt();
-            coefficient(fit.at[i], se, t, |z| normal::t_two_sided(z, df))
+            // Scores that are 0 but for rounding have no spread to take an interval from.
+            if variance <= 1e-20 * bread[i * p + i] {
+                return Err(StatsError::NoSolution {
+                    what: "the cluster-robust interval",
+                    reason: "every participant's choices are what the model expects, which leaves no differences between participants to take a standard error from",
+                });
+            }
+            let se = (factor * variance).sqrt();
+            Ok(coefficient(fit.at[i], se, t, |z| normal::t_two_sided(z, df)))
         })
-        .collect();
+        .collect::<Result<Vec<_>>>()?;
     Ok(RobustLogit {
         coefficients,
         naive_standard_errors: (0..p).map(|i| bread[i * p + i].sqrt()).collect(),
@@ -145,13 +153,12 @@ pub(super) const COLLINEAR: StatsError =
     StatsError::NoSolution { what: "the logistic regression", reason: "the predictors are collinear" };
 
 pub(super) fn coefficient(estimate: f64, se: f64, critical: f64, p: impl Fn(f64) -> f64) -> Coefficient {
-    // A zero standard error (all cluster scores vanish) makes any departure certain and none uncertain.
-    let statistic = if estimate == 0.0 { 0.0 } else { estimate / se };
+    let statistic = estimate / se;
     Coefficient {
         estimate,
         standard_error: se,
         statistic,
-        p: if statistic.is_infinite() { 0.0 } else { p(statistic) },
+        p: p(statistic),
         low: estimate - critical * se,
         high: estimate + critical * se,
     }
@@ -214,18 +221,27 @@ pub(super) fn plain(rows: &[Row], p: usize) -> Result<Maximum> {
         for row in rows {
             let eta = dot(&row.x, beta);
             let (k, n) = (row.successes as f64, row.trials as f64);
-            let mu = logistic(eta);
+            // k − nμ without cancelling where μ is 1 to rounding.
+            let (mu, rest) = (logistic(eta), logistic(-eta));
             sum.value += k * eta - n * softplus(eta);
-            add_row(&mut sum, row, k - n * mu, n * mu * logistic(-eta));
+            add_row(&mut sum, row, k * rest - (n - k) * mu, n * mu * rest);
         }
         sum
     };
     let start = vec![0.0; p];
     linalg::cholesky(&log_likelihood(&start).curvature, p).ok_or(COLLINEAR)?;
-    // The likelihood is concave: without a finite maximum it rises towards infinity, and beyond 20 a fitted probability is 0 or 1 to 2e-9.
     maximise(&start, &[], log_likelihood)
-        .filter(|fit| rows.iter().all(|r| dot(&r.x, &fit.at).abs() <= 20.0))
+        .filter(|fit| is_summit(&log_likelihood(&fit.at), rows, p))
         .ok_or_else(|| separated("a combination of the predictors tells the choices apart without error"))
+}
+
+/// Whether a Newton step from here would leave every row's log odds as they are. The likelihood is concave: where it has no finite maximum, the
+/// way up is a step of about 1 in the log odds, however flat it has become.
+fn is_summit(here: &Local, rows: &[Row], p: usize) -> bool {
+    let Some(l) = linalg::cholesky(&here.curvature, p) else { return false };
+    let mut step = here.gradient.clone();
+    linalg::solve(&l, p, &mut step);
+    rows.iter().all(|row| dot(&row.x, &step).abs() < 0.01)
 }
 
 /// Adds a row's score and weight times x, xxᵀ.

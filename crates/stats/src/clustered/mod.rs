@@ -1,7 +1,8 @@
 //! Choices that come in clusters: several trials from each participant are not independent.
 //!
 //! A participant who prefers one technique prefers it in every pair, so n trials of m participants carry less than n answers. Here are
-//! the size of that dependence ([`intraclass`](fn@intraclass)), and what to do about it: resample participants ([`bootstrap`](fn@bootstrap)), keep the per-trial
+//! the size of that dependence ([`intraclass`](fn@intraclass)), the share of all choices over participants ([`share_interval`]), and what else to do
+//! about it: resample participants ([`bootstrap`](fn@bootstrap)), keep the per-trial
 //! model but take its standard errors from the clusters ([`robust_logit`]), or model the participants ([`mixed_logit`]).
 //! [`independence_warning`] says when a per-trial test is not to be believed.
 
@@ -9,15 +10,17 @@ mod bootstrap;
 mod intraclass;
 mod logit;
 mod mixed;
+mod share;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bootstrap::quantile;
 pub use bootstrap::{Bootstrap, BootstrapMethod, MIN_REPLICATES, bootstrap};
-pub(crate) use bootstrap::{check_replicates, quantile, standard_deviation};
 pub use intraclass::{IccEstimator, IndependenceWarning, Intraclass, independence_warning, intraclass};
 pub use logit::{Coefficient, Correction, RobustLogit, Row, robust_logit};
 pub(crate) use logit::{logistic, softplus};
 pub use mixed::{MixedLogit, mixed_logit};
+pub use share::{ShareInterval, ShareMethod, share_interval};
 
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};

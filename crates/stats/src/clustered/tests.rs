@@ -155,8 +155,68 @@ fn the_warning_is_due_when_trials_are_shared() {
     assert!((warning.design_effect.unwrap() - 7.0 / 6.0).abs() < 1e-14);
     assert!(warning.message.contains("64 trials") && warning.message.contains("55 independent"));
     assert_eq!(None, independence_warning(&Cluster::from_counts(&[10, 20])).unwrap());
+    // Who alternates has not given more answers than there are: 19 chose one of two, one chose none; correlation −1/1.05.
+    let alternating = independence_warning(&Cluster::from_counts(&[1, 19, 0])).unwrap().unwrap();
+    assert!((alternating.icc.unwrap() + 19.0 / 21.0).abs() < 1e-14, "{alternating:?}");
+    assert_eq!(alternating.effective_trials, Some(40.0));
+    assert!(
+        alternating.message.contains("alternate") && !alternating.message.contains("worth"),
+        "{alternating:?}"
+    );
     // With everybody the same the correlation is undefined, but the trials are still shared.
     assert!(independence_warning(&Cluster::from_counts(&[0, 0, 9])).unwrap().unwrap().icc.is_none());
+}
+
+#[test]
+fn scores_that_vanish_give_no_interval_and_no_certainty() {
+    // Everybody presses one key, and the sides are balanced: each chooses the target in half of the trials.
+    for clusters in [Cluster::from_counts(&[0, 20, 0]), Cluster::from_counts(&[0, 7, 0, 0])] {
+        let error = robust_logit(&Row::intercept_only(&clusters), Correction::Cr1).unwrap_err();
+        assert!(
+            matches!(error, StatsError::NoSolution { what: "the cluster-robust interval", .. }),
+            "{error}"
+        );
+    }
+    // Control: one who chose otherwise is a difference between participants.
+    let one = Cluster::from_counts(&[0, 20, 1]);
+    assert!(
+        robust_logit(&Row::intercept_only(&one), Correction::Cr1).unwrap().coefficients[0].standard_error
+            > 0.0
+    );
+}
+
+#[test]
+fn a_finite_logit_is_found_however_far_it_reaches() {
+    let row = |participant, x, successes| Row { participant, successes, trials: 10, x: vec![1.0, x] };
+    let xs = [(-30.0, 0), (-1.0, 2), (-0.5, 4), (0.0, 5), (0.5, 7), (1.0, 8), (30.0, 10)];
+    let rows: Vec<Row> = (0..).zip(xs).map(|(i, (x, k))| row(i, x, k)).collect();
+    let fit = robust_logit(&rows, Correction::Cr1).unwrap();
+    let beta: Vec<f64> = fit.coefficients.iter().map(|c| c.estimate).collect();
+    assert!(30.0 * beta[1] > 20.0, "log odds beyond 20: {beta:?}");
+    // The score equations hold, written out here.
+    for power in [0, 1] {
+        let score: f64 = xs
+            .iter()
+            .map(|&(x, k)| (k as f64 - 10.0 / (1.0 + (-(beta[0] + beta[1] * x)).exp())) * x.powi(power))
+            .sum();
+        assert!(score.abs() < 1e-9, "{score}");
+    }
+    // One success of 10¹⁰ trials: log odds of −23 by hand.
+    let rare = [(1, 1, 5_000_000_000), (2, 0, 5_000_000_000)].map(|(participant, successes, trials)| Row {
+        participant,
+        successes,
+        trials,
+        x: vec![1.0],
+    });
+    let found = robust_logit(&rare, Correction::Cr1).unwrap().coefficients[0].estimate;
+    assert!((found - (1e-10f64 / (1.0 - 1e-10)).ln()).abs() < 1e-6, "{found}");
+    // Control: without the overlap there is no maximum, and quasi-complete separation is none either.
+    let far = |middle| [(-30.0, 0), (0.0, middle), (30.0, 10)];
+    for data in [far(0).to_vec(), far(5).to_vec()] {
+        let rows: Vec<Row> = (0..).zip(data).map(|(i, (x, k))| row(i, x, k)).collect();
+        let found = robust_logit(&rows, Correction::Cr1);
+        assert!(matches!(found, Err(StatsError::Separated { .. })), "{found:?}");
+    }
 }
 
 fn mean(sample: &[&Cluster]) -> Option<f64> {
@@ -214,6 +274,8 @@ fn the_bootstrap_refuses_what_it_cannot_do() {
         (calls == 1).then_some(1.0)
     });
     assert!(rarely.is_err());
+    let alike = bootstrap(&Cluster::from_counts(&[0, 9, 0]), 2000, 0.95, 0, method, mean).unwrap_err();
+    assert!(alike.to_string().contains("all resamples agree"), "{alike}");
 }
 
 proptest! {

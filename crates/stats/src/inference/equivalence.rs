@@ -7,21 +7,9 @@ use super::{Interval, TTest};
 use crate::distributions::StudentT;
 use crate::{Result, StatsError};
 
-/// How far a mean may lie from its null value and still count as equivalent to it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Bounds {
-    /// ± so many units of the values.
-    Points(f64),
-    /// ± so many standard deviations of the sample.
-    Sd(f64),
-}
-
 /// What two one-sided tests say (TOST, Schuirmann 1987).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Equivalence {
-    /// The bounds as asked for.
-    pub bounds: Bounds,
     /// Half the width of the equivalence range, in units of the values.
     pub half_width: f64,
     /// t against the lower bound, mean − mu > −half_width, and its one-sided p.
@@ -38,15 +26,32 @@ pub struct Equivalence {
     pub interval_90: Interval,
 }
 
-/// Two one-sided t-tests of the sample behind `test`.
+/// Whether a share is equivalent to one half.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+pub struct ShareEquivalence {
+    /// The bound: how far from ½ the share may lie.
+    pub within: f64,
+    /// The tests, in choices of one participant.
+    pub tests: Equivalence,
+}
+
+/// [`equivalence`] of the number of choices out of `items` behind `test` with half of them, within a bound on the share.
 ///
 /// # Errors
-/// [`StatsError::Invalid`] unless the bound is finite and above 0.
-pub fn equivalence(test: &TTest, bounds: Bounds) -> Result<Equivalence> {
-    let half_width = match bounds {
-        Bounds::Points(points) => StatsError::positive("bounds (points)", points)?,
-        Bounds::Sd(sds) => StatsError::positive("bounds (sd)", sds)? * test.sd,
-    };
+/// [`StatsError::Invalid`] unless the bound lies in (0, ½): no share is further from ½ than that.
+pub fn share_equivalence(test: &TTest, items: u32, within: f64) -> Result<ShareEquivalence> {
+    if !(within > 0.0 && within < 0.5) {
+        return Err(StatsError::Invalid { name: "within", value: within, rule: "must lie in (0, 0.5)" });
+    }
+    Ok(ShareEquivalence { within, tests: equivalence(test, within * f64::from(items))? })
+}
+
+/// Two one-sided t-tests of the sample behind `test`: does its mean lie within `half_width` of mu, in units of the values?
+///
+/// # Errors
+/// [`StatsError::Invalid`] unless `half_width` is finite and above 0.
+pub fn equivalence(test: &TTest, half_width: f64) -> Result<Equivalence> {
+    let half_width = StatsError::positive("half_width", half_width)?;
     let distribution = StudentT::new(test.df)?;
     let se = test.sd / (test.n as f64).sqrt();
     let shift = half_width / se;
@@ -54,7 +59,6 @@ pub fn equivalence(test: &TTest, bounds: Bounds) -> Result<Equivalence> {
     let (p_lower, p_upper) = (distribution.sf(t_lower)?, distribution.cdf(t_upper)?);
     let (mean, reach) = (test.t * se, distribution.quantile_sf(0.05)? * se);
     Ok(Equivalence {
-        bounds,
         half_width,
         t_lower,
         p_lower,

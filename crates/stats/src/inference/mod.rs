@@ -24,11 +24,12 @@ pub use bayes::{JzsBayesFactor, ORDINARY_PRIOR_SCALE, jzs_bayes_factor};
 pub use binomial_test::{BinomialTest, binomial_test, sign_test};
 pub use detection::{Dprime, ExtremeRates, dprime_2afc};
 pub use effect_size::{EffectSize, effect_size};
-pub use equivalence::{Bounds, Equivalence, equivalence};
+pub use equivalence::{Equivalence, ShareEquivalence, equivalence, share_equivalence};
 pub use multiplicity::{benjamini_hochberg, hochberg, holm};
 pub use power::{
     BinomialPlan, TPlan, detectable_effect_t, power_binomial, power_t, sample_size_binomial, sample_size_t,
 };
+pub(crate) use proportion::score_interval;
 pub use proportion::{clopper_pearson, jeffreys, wilson};
 pub use ranks::{RankMethod, SignedRank, wilcoxon_signed_rank};
 pub use t_test::{TTest, t_test_from_counts, t_test_one_sample, t_test_paired};

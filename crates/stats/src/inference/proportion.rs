@@ -11,16 +11,19 @@ use crate::distributions::{Beta, normal};
 /// level outside (0, 1).
 pub fn wilson(successes: u64, n: u64, level: f64) -> Result<Interval> {
     check_successes(successes, n)?;
-    let z = normal::quantile_sf(tail_of(level)?)?;
-    let (x, n_) = (successes as f64, n as f64);
-    let failures = (n - successes) as f64;
+    let [low, high] = score_interval(successes as f64, n as f64, normal::quantile_sf(tail_of(level)?)?);
+    Ok(Interval { low, high, level })
+}
+
+/// Wilson's ends for x successes in n trials, whole or not, at the normal deviate z.
+pub(crate) fn score_interval(x: f64, n: f64, z: f64) -> [f64; 2] {
     let z2 = z * z;
-    let root = z * (z2 / 4.0 + x * failures / n_).sqrt();
+    let root = z * (z2 / 4.0 + x * (n - x) / n).sqrt();
     let middle = x + z2 / 2.0;
     // The end near 0 as a quotient, because middle − root cancels there: their product is x² (n + z²) / n.
-    let low = if successes == 0 { 0.0 } else { x * x / n_ / (middle + root) };
-    let high = if successes == n { 1.0 } else { (middle + root) / (n_ + z2) };
-    Ok(Interval { low, high, level })
+    let low = if x == 0.0 { 0.0 } else { x * x / n / (middle + root) };
+    let high = if x == n { 1.0 } else { (middle + root) / (n + z2) };
+    [low, high]
 }
 
 /// The exact interval of Clopper & Pearson (1934): covers at least its level.

@@ -32,7 +32,7 @@ pub struct SignedRank {
 /// Up to here the distribution is built exactly, at a cost of n³.
 const EXACT_TO: usize = 500;
 
-/// Tests whether values are symmetric about `mu`. Equal distances share the mean of their ranks, and the exact
+/// Tests whether values are symmetric about `mu`. Distances that are equal but for rounding share the mean of their ranks, and the exact
 /// distribution is that of the tied ranks (R's and scipy's exact p-values assume that there are no ties).
 ///
 /// # Errors
@@ -44,13 +44,16 @@ pub fn wilcoxon_signed_rank(values: &[f64], mu: f64) -> Result<SignedRank> {
         let value = values[index];
         return Err(StatsError::InvalidElement { name: "values", index, value, rule: "must be finite" });
     }
-    let mut distances: Vec<f64> = values.iter().map(|v| v - mu).filter(|&d| d != 0.0).collect();
+    // 0.3 − 0.2 and 0.2 − 0.1 are one distance that rounding tells apart: each goes with what its rounding can be.
+    let distance = |&v: &f64| (v - mu, 8.0 * f64::EPSILON * v.abs().max(mu.abs()));
+    let mut distances: Vec<(f64, f64)> =
+        values.iter().map(distance).filter(|(d, rounding)| d.abs() > *rounding).collect();
     if distances.is_empty() {
         return Err(StatsError::TooFew { name: "values other than mu", len: 0, needed: 1 });
     }
-    distances.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    distances.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     let doubled_ranks = doubled_midranks(&distances);
-    let above: u64 = distances.iter().zip(&doubled_ranks).filter(|(d, _)| **d > 0.0).map(|(_, r)| r).sum();
+    let above: u64 = distances.iter().zip(&doubled_ranks).filter(|(d, _)| d.0 > 0.0).map(|(_, r)| r).sum();
     let total: u64 = doubled_ranks.iter().sum();
     let n = distances.len();
     let smaller = above.min(total - above);
@@ -64,10 +67,10 @@ pub fn wilcoxon_signed_rank(values: &[f64], mu: f64) -> Result<SignedRank> {
     Ok(SignedRank { n: n as u64, v: above as f64 / 2.0, p: (2.0 * p).min(1.0), method })
 }
 
-/// Twice the midranks of values sorted by size, so that they are whole.
-fn doubled_midranks(sorted: &[f64]) -> Vec<u64> {
+/// Twice the midranks of distances sorted by size, so that they are whole; neighbours no further apart than rounding share theirs.
+fn doubled_midranks(sorted: &[(f64, f64)]) -> Vec<u64> {
     let mut ranks = Vec::with_capacity(sorted.len());
-    for group in sorted.chunk_by(|a, b| a.abs() == b.abs()) {
+    for group in sorted.chunk_by(|a, b| b.0.abs() - a.0.abs() <= a.1.max(b.1)) {
         let first = ranks.len() as u64 + 1;
         let last = first + group.len() as u64 - 1;
         ranks.extend(std::iter::repeat_n(first + last, group.len()));

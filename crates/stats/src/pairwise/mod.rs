@@ -2,11 +2,12 @@
 //!
 //! One JOD ("just objectionable difference") between two conditions means that 75% of choices go to the better one (Perez-Ortiz & Mantiuk 2017).
 //! Thurstone's Case V puts a cumulative Gaussian between difference and proportion, Bradley–Terry a logistic; both are fitted by maximum
-//! likelihood to any connected design, complete or not. [`scale`](fn@scale) fits, [`observer_intervals`] resamples whole observers,
+//! likelihood to any connected design, complete or not. [`scale`](fn@scale) fits, [`observer_intervals`] asks how far whole observers differ,
 //! [`odd_observers`] and [`circular_triads`] look at single ones.
 
-mod bootstrap;
+mod flips;
 mod graph;
+mod intervals;
 mod model;
 mod observers;
 mod scale;
@@ -14,7 +15,8 @@ mod scale;
 mod tests;
 mod triads;
 
-pub use bootstrap::{ConditionInterval, DifferenceInterval, ScaleIntervals, observer_intervals};
+pub use flips::EXACT_FLIPS_TO;
+pub use intervals::{ConditionInterval, DifferenceInterval, ScaleIntervals, observer_intervals};
 pub use model::Model;
 pub use observers::{ObserverFit, odd_observers};
 pub use scale::{Estimator, Origin, Scale, ScaleOptions, scale};
@@ -102,6 +104,12 @@ impl Wins {
     /// All choices.
     pub fn total(&self) -> u64 {
         self.counts.iter().fold(0, |sum, c| sum.saturating_add(*c))
+    }
+
+    /// These choices less some of them.
+    fn without(&self, own: &Wins) -> Wins {
+        let counts = self.counts.iter().zip(&own.counts).map(|(all, own)| all - own).collect();
+        Wins { conditions: self.conditions, counts }
     }
 
     /// The compared pairs (i < j) with the choices of each.

@@ -20,8 +20,9 @@ pub struct ObserverFit {
     /// The same, less its expectation, in standard deviations, if the observer chose as the others' scale says: far below −3 is odd.
     pub z: Option<f64>,
     /// How far below the first quartile of all observers' `log_likelihood`, in interquartile ranges; 0 above it (Perez-Ortiz & Mantiuk 2017).
+    /// `None` also where that range is 0.
     pub distance: Option<f64>,
-    /// `distance` > 1.5 (Tukey's fence): look at this observer. Not a reason to exclude by itself; a preregistered rule is.
+    /// `distance` > 1.5 (Tukey's fence), or z < −3 where there is no distance: look at this observer. Not a reason to exclude by itself; a preregistered rule is.
     pub odd: bool,
 }
 
@@ -46,10 +47,7 @@ pub fn odd_observers(
     for observer in observers {
         let own = pool(n, [observer])?;
         let choices = own.total();
-        let mut others = all.clone();
-        for (all, own) in others.counts.iter_mut().zip(&own.counts) {
-            *all -= own;
-        }
+        let others = all.without(&own);
         let estimator = match graph::unbeaten(&others) {
             None if options.estimator != Estimator::Jeffreys => Estimator::MaximumLikelihood,
             _ => Estimator::Jeffreys,
@@ -86,12 +84,15 @@ pub fn odd_observers(
     let mut sorted: Vec<f64> = fits.iter().filter_map(|f| f.log_likelihood).collect();
     sorted.sort_by(f64::total_cmp);
     let (first, third) = (quantile(&sorted, 0.25), quantile(&sorted, 0.75));
+    let range = third - first;
+    // Where half of all observers choose alike but for rounding, quartiles make no fence, and an observer's own z has to say it.
+    let fence = range > 1e-9 * first.abs();
     for fit in &mut fits {
-        fit.distance = fit.log_likelihood.map(|l| {
-            let below = first - l;
-            if below <= 0.0 { 0.0 } else { below / (third - first).max(1e-12) }
-        });
-        fit.odd = fit.distance.is_some_and(|d| d > 1.5);
+        fit.distance = fit.log_likelihood.filter(|_| fence).map(|l| (first - l).max(0.0) / range);
+        fit.odd = match fit.distance {
+            Some(distance) => distance > 1.5,
+            None => fit.z.is_some_and(|z| z < -3.0),
+        };
     }
     Ok(fits)
 }

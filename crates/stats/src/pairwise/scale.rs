@@ -168,6 +168,24 @@ fn information(pairs: &[Pair], q: usize, model: Model, theta: &[f64]) -> Vec<f64
     matrix
 }
 
+/// The gradient of the ln likelihood in all latent positions `at`, and their Fisher information (n × n).
+pub(super) fn score(wins: &Wins, model: Model, at: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let n = at.len();
+    let (mut gradient, mut information) = (vec![0.0; n], vec![0.0; n * n]);
+    for pair in wins.pairs() {
+        let link = model.link(at[pair.i] - at[pair.j]);
+        let slope = pair.wins * link.slope.0 - pair.losses * link.slope.1;
+        let weight = (pair.wins + pair.losses) * link.information;
+        for (i, x) in [(pair.i, 1.0), (pair.j, -1.0)] {
+            gradient[i] += x * slope;
+            for (j, y) in [(pair.i, 1.0), (pair.j, -1.0)] {
+                information[i * n + j] += x * y * weight;
+            }
+        }
+    }
+    (gradient, information)
+}
+
 /// ln likelihood (+ ½ ln det of the Fisher information), its gradient, and as curvature minus the Hessian, but for the prior's with the
 /// leverages held fixed (which is exact on a tree and spares third derivatives elsewhere).
 fn penalised(pairs: &[Pair], q: usize, model: Model, theta: &[f64], jeffreys: bool) -> Local {

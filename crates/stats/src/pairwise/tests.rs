@@ -209,6 +209,20 @@ fn a_reversed_observer_is_odd() {
 }
 
 #[test]
+fn nobody_is_odd_by_a_fence_that_has_no_width() {
+    // Nine alike, and one who differs in one of three choices.
+    let observer = |id: usize, first: [usize; 2]| Observer {
+        id: format!("o{id}"),
+        choices: [first, [1, 2], [0, 2]].map(|[winner, loser]| Choice { winner, loser, times: 1 }).to_vec(),
+    };
+    let mut observers: Vec<Observer> = (0..9).map(|id| observer(id, [0, 1])).collect();
+    observers.push(observer(9, [1, 0]));
+    let found = odd_observers(&names(3), &observers, ScaleOptions::default()).unwrap();
+    assert!(found.iter().all(|f| f.distance.is_none()), "{found:?}");
+    assert!(found.iter().all(|f| f.odd == (f.z.unwrap() < -3.0)), "{found:?}");
+}
+
+#[test]
 fn observer_intervals_repeat_and_cover() {
     let truth = [0.0, 0.5, 1.0, 2.0];
     let run = |seed| {
@@ -222,8 +236,9 @@ fn observer_intervals_repeat_and_cover() {
             let index = |name: &str| name[1..].parse::<usize>().unwrap();
             let expected = truth[index(&d.a)] - truth[index(&d.b)];
             total += 1;
-            hits += u32::from(d.low <= expected && expected <= d.high);
-            let (low, high) = (d.jod - (d.jod - d.low) / 2.0, d.jod + (d.high - d.jod) / 2.0);
+            let [low, high] = [d.low, d.high].map(Option::unwrap);
+            hits += u32::from(low <= expected && expected <= high);
+            let (low, high) = (d.jod - (d.jod - low) / 2.0, d.jod + (high - d.jod) / 2.0);
             halved += u32::from(low <= expected && expected <= high);
         }
     }

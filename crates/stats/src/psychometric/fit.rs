@@ -124,23 +124,31 @@ pub(super) fn penalised(levels: &[Level], task: &Task, at: &[f64]) -> Local {
     sum
 }
 
-/// Newton from the best few points of a coarse grid: the likelihood of a lapsing observer can have two hills.
-pub(super) fn search(levels: &Levels, task: &Task, bounds: &[(f64, f64)]) -> Result<Maximum> {
+/// Thresholds, widths and lapse rates of the coarse grid from which maxima are climbed.
+pub(super) const STARTS: [usize; 3] = [13, 5, 3];
+
+/// The grid's points within `bounds`, lapse rates innermost.
+pub(super) fn starts(levels: &Levels, bounds: &[(f64, f64)], eta: f64) -> Vec<Vec<f64>> {
     let spread = levels.spread();
-    let etas: &[f64] = if task.overdispersion { &[0.0, 0.15] } else { &[0.0] };
     let mut starts = Vec::new();
-    for i in 0..=12 {
-        let threshold = levels.low + spread * (f64::from(i) / 8.0 - 0.25);
+    for i in 0..STARTS[0] {
+        let threshold = levels.low + spread * (i as f64 / 8.0 - 0.25);
         for width in [0.02, 0.1, 0.3, 0.8, 2.0] {
             for lapse in [0.01, 0.06, 0.2] {
-                for &eta in etas {
-                    let at = [threshold, width * spread, lapse, eta];
-                    let at: Vec<f64> = at.iter().zip(bounds).map(|(x, b)| x.clamp(b.0, b.1)).collect();
-                    starts.push((penalised(&levels.levels, task, &at).value, at));
-                }
+                let at = [threshold, width * spread, lapse, eta];
+                starts.push(at.iter().zip(bounds).map(|(x, b)| x.clamp(b.0, b.1)).collect());
             }
         }
     }
+    starts
+}
+
+/// Newton from the best few points of a coarse grid: the likelihood of a lapsing observer can have two hills.
+pub(super) fn search(levels: &Levels, task: &Task, bounds: &[(f64, f64)]) -> Result<Maximum> {
+    let etas: &[f64] = if task.overdispersion { &[0.0, 0.15] } else { &[0.0] };
+    let grid = etas.iter().flat_map(|&eta| starts(levels, bounds, eta));
+    let mut starts: Vec<(f64, Vec<f64>)> =
+        grid.map(|at| (penalised(&levels.levels, task, &at).value, at)).collect();
     starts.sort_by(|a, b| b.0.total_cmp(&a.0));
     starts
         .iter()

@@ -20,7 +20,7 @@ mod tests;
 pub use belief::{Belief, BeliefGrid, Estimate};
 pub use fit::{Curve, Fit, fit};
 pub use goodness::{GoodnessOfFit, goodness_of_fit};
-pub use observers::resampled_threshold;
+pub use observers::{ResampledThreshold, resampled_threshold};
 pub use posterior::{ParameterPosterior, Posterior, ThresholdPosterior, posterior};
 pub use profile::{ProfileInterval, ProfileIntervals, profile_intervals};
 pub use sigmoid::{Scaling, Sigmoid};

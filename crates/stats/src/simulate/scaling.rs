@@ -1,7 +1,6 @@
 //! How often a difference on a scale is found.
 
 use super::{Rate, at_least, at_most_a_million, check_runs};
-use crate::clustered::MIN_REPLICATES;
 use crate::pairwise::{Choice, Observer, ScaleOptions, observer_intervals};
 use crate::random::Random;
 use crate::{Result, StatsError};
@@ -36,14 +35,17 @@ fn ninety_five() -> f64 {
 /// What the design shows of its conditions' differences.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ScalePower {
-    /// For each pair (i < j, row by row) how often its observer-bootstrap interval leaves out 0.
+    /// For each pair (i < j, row by row) how often the sign-flip test finds it at the level 1 − `level`.
     pub found: Vec<Rate>,
-    /// How often an interval holds the true difference, over all pairs of all studies. With `observer_sd` > 0 the truth of the pooled scale is
+    /// How often an interval holds the true difference, over all pairs of all studies that have one. With `observer_sd` > 0 the truth of the pooled scale is
     /// slightly shrunk, which counts against it.
     pub coverage: Rate,
 }
 
-/// Simulates `runs` studies, each with 2,000 resamples of its observers. Errors: fewer than two conditions or observers, no repeats, positions
+/// Random patterns of signs in each simulated study.
+const FLIPS: usize = 1999;
+
+/// Simulates `runs` studies. Errors: fewer than two conditions or observers, no repeats, positions
 /// that aren't finite, no runs.
 pub fn scale_power(design: &ScaleDesign, runs: u64, seed: u64) -> Result<ScalePower> {
     check_runs(runs)?;
@@ -65,8 +67,7 @@ pub fn scale_power(design: &ScaleDesign, runs: u64, seed: u64) -> Result<ScalePo
         let mut random = Random::stream(seed, run);
         let observers: Vec<Observer> =
             (0..design.observers).map(|o| observe(design, &pairs, o, &mut random)).collect();
-        let Ok(result) =
-            observer_intervals(&names, &observers, design.options, MIN_REPLICATES, design.level, run)
+        let Ok(result) = observer_intervals(&names, &observers, design.options, FLIPS, design.level, run)
         else {
             found.iter_mut().for_each(|f| f.push(None));
             inside.extend(pairs.iter().map(|_| None));
@@ -74,8 +75,8 @@ pub fn scale_power(design: &ScaleDesign, runs: u64, seed: u64) -> Result<ScalePo
         };
         for ((found, d), &(i, j)) in found.iter_mut().zip(&result.differences).zip(&pairs) {
             let truth = design.jod[i] - design.jod[j];
-            found.push(Some(d.low > 0.0 || d.high < 0.0));
-            inside.push(Some(d.low <= truth && truth <= d.high));
+            found.push(Some(d.p < 1.0 - design.level));
+            inside.push(d.low.zip(d.high).map(|(low, high)| low <= truth && truth <= high));
         }
     }
     Ok(ScalePower { found: found.into_iter().map(Rate::of).collect(), coverage: Rate::of(inside) })

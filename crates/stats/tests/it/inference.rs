@@ -155,6 +155,17 @@ fn rank_tests_count_ties() {
 }
 
 #[test]
+fn decimals_tie_as_they_are_written() {
+    // exactRankTests::wilcox.exact(c(-1, 1, 1, 1, -1, 1, 1, 1)): V = 27, p = 0.2890625. In doubles 0.2 − 0.1 and 0.3 − 0.2 differ.
+    let found = wilcoxon_signed_rank(&[0.1, 0.3, 0.3, 0.3, 0.1, 0.3, 0.3, 0.3], 0.2).unwrap();
+    assert_eq!((found.v, found.p), (27.0, 0.2890625));
+    // What equals mu but for rounding is left out: 0.1 + 0.2 is 0.30000000000000004.
+    assert_eq!(wilcoxon_signed_rank(&[0.3, 0.5, 0.1], 0.1 + 0.2).unwrap().n, 2);
+    // Control: distances that do differ do not tie.
+    assert_eq!(wilcoxon_signed_rank(&[0.1, 0.301, 0.3], 0.2).unwrap().v, 4.5);
+}
+
+#[test]
 fn corrections_are_those_of_r() {
     let r = Expected::r();
     let p = [0.160569, 2.03782e-4, 3.66864e-4, 0.04, 0.04, 0.9, 1.0, 0.0];
@@ -213,12 +224,12 @@ fn sample_sizes_are_the_smallest() {
 fn equivalence_is_two_one_sided_tests_of_r() {
     let r = Expected::r();
     let test = t_test_from_counts(&[(0.0, 12), (1.0, 14), (2.0, 6)], 1.0).unwrap();
-    let points = equivalence(&test, Bounds::Points(0.5)).unwrap();
+    let points = equivalence(&test, 0.5).unwrap();
     r.check("tost_p.points", points.p);
-    r.check("tost_p.sd", equivalence(&test, Bounds::Sd(0.5)).unwrap().p);
+    r.check("tost_p.sd", equivalence(&test, 0.5 * test.sd).unwrap().p);
     r.check("tost_low", points.interval_90.low);
     r.check("tost_high", points.interval_90.high);
-    assert!(equivalence(&test, Bounds::Sd(0.0)).is_err());
+    assert!(equivalence(&test, 0.0).is_err());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The crate against reference values.
 
+mod coverage;
 mod distributions;
 mod inference;
 mod nist;

@@ -49,6 +49,7 @@ pub(super) fn read(
             items.iter().map(|v| number(v, 0.0, 1.0).filter(|p| *p > GUESS && *p < 1.0)).collect()
         })
         .unwrap_or_else(|| vec![0.75]);
+    let t_test = fields.may("t_test", "true or false", Node::as_bool).unwrap_or(false);
     fields.done();
 
     if catch {
@@ -63,5 +64,13 @@ pub(super) fn read(
     if items.iter().all(|pair| pair.level.is_some()) && levels.len() < 3 {
         block.report(key, "must have at least three different levels to show a curve");
     }
-    Some(Psychometric { function: function?, direction: direction?, label: label?, unit, lapse, thresholds })
+    Some(Psychometric {
+        function: function?,
+        direction: direction?,
+        label: label?,
+        unit,
+        lapse,
+        thresholds,
+        t_test,
+    })
 }

@@ -177,35 +177,19 @@ impl<'a> Crowd<'a> {
     }
 }
 
-/// What observers do on average in a block.
-pub(super) struct Moments {
-    /// Probability of choosing the target in each pair, lapses included.
-    pub(super) shares: Vec<f64>,
-    /// Variance over observers of the number of target choices.
-    pub(super) variance: f64,
-}
-
-/// The moments of a block's choices by observers who answer all of it with care; by a sum over their own normal deviations where there is
-/// no closed form. `None` for a catch block, and for an adaptive one, whose levels the answers choose.
-pub(super) fn moments(design: &Design, block: usize) -> Option<Moments> {
+/// The probability with which observers who answer a block with care choose its target, by item, lapses included: over their own normal deviations
+/// as a sum where there is no closed form. `None` for a catch block, and for an adaptive one, whose levels the answers choose.
+pub(super) fn chances(design: &Design, block: usize) -> Option<Vec<f64>> {
     let supposed = design.truths.get(block)?.as_ref()?;
     let of_study = design.study.blocks.get(block).filter(|block| block.adaptive.is_none())?;
     let lapsing = |chance: f64| (1.0 - supposed.lapse) * chance + 0.5 * supposed.lapse;
-    let items = of_study.items.len() as f64;
-    if let Truth::Preference { probability, icc } = &supposed.truth {
-        let share = lapsing(*probability);
-        let own = (1.0 - supposed.lapse).powi(2) * icc * probability * (1.0 - probability);
-        let variance = items * share * (1.0 - share) + items * (items - 1.0) * own;
-        return Some(Moments { shares: vec![share; of_study.items.len()], variance });
-    }
-    // E[Σ p], E[Σ p(1 − p)] and E[(Σ p)²] over z.
-    let (mut shares, mut within, mut square, mut weights) = (vec![0.0; of_study.items.len()], 0.0, 0.0, 0.0);
+    let (mut shares, mut weights) = (vec![0.0; of_study.items.len()], 0.0);
     for step in -60..=60 {
         let z = f64::from(step) / 10.0;
         let weight = (-0.5 * z * z).exp();
-        let mut count = 0.0;
         for (pair, mean) in of_study.items.iter().zip(&mut shares) {
-            let chance = lapsing(match &supposed.truth {
+            let chance = match &supposed.truth {
+                Truth::Preference { probability, .. } => *probability,
                 Truth::Quality { jod, observer_sd } => {
                     // Two deviations, of target and other.
                     let difference = jod.get(&of_study.target)? - jod.get(of_study.other())?;
@@ -214,18 +198,12 @@ pub(super) fn moments(design: &Design, block: usize) -> Option<Moments> {
                 Truth::Threshold { threshold, width, threshold_sd } => {
                     at_level(of_study, pair.level, threshold + threshold_sd * z, *width)
                 }
-                Truth::Preference { probability, .. } => *probability,
-            });
-            *mean += weight * chance;
-            within += weight * chance * (1.0 - chance);
-            count += chance;
+            };
+            *mean += weight * lapsing(chance);
         }
-        square += weight * count * count;
         weights += weight;
     }
-    shares.iter_mut().for_each(|share| *share /= weights);
-    let mean: f64 = shares.iter().sum();
-    Some(Moments { shares, variance: (within + square) / weights - mean * mean })
+    Some(shares.into_iter().map(|share| share / weights).collect())
 }
 
 /// The block's psychometric function without lapses at a pair's level; guessing where there is none.

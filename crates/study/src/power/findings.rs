@@ -1,10 +1,9 @@
 //! What a report claims, and what is true.
 
-use super::crowd::moments;
+use super::crowd::chances;
 use super::design::{Design, Truth};
 use crate::answers::{blocks, compares, conditions};
 use crate::report::{ChoiceAnalysis, Report};
-use kelir_stats::inference::Bounds;
 use kelir_stats::pairwise::{ScaleOptions, Wins, scale};
 
 /// Everything that a report of the design's study may claim, in an order that every report keeps.
@@ -41,16 +40,15 @@ pub(super) struct Outcome {
 /// The p-value of a test; `None` where it is not defined.
 type PValue = fn(&ChoiceAnalysis) -> Option<f64>;
 
-/// A block's tests but Holm's. Those of equivalence ask for the opposite of the others.
-const TESTS: [(&str, PValue); 8] = [
+/// A block's tests but Holm's. That of equivalence asks for the opposite of the others.
+const TESTS: [(&str, PValue); 7] = [
     ("t-test of participants' counts (the paper's)", |a| a.t_test.p),
     (SECOND, |a| a.sign.as_ref().map(|t| t.p)),
     ("Wilcoxon test of the counts", |a| a.wilcoxon.as_ref().map(|t| t.p)),
     ("cluster-robust logit", |a| a.robust_logit.as_ref().map(|l| l.coefficients[0].p)),
     ("random-intercept logit", |a| a.mixed_logit.as_ref().map(|l| l.coefficients[0].p)),
     (PER_TRIAL, |a| a.binomial.as_ref().map(|t| t.p)),
-    ("equivalence within ±0.5 choices", |a| equivalence(a, Bounds::Points(0.5))),
-    ("equivalence within ±0.5 SD", |a| equivalence(a, Bounds::Sd(0.5))),
+    (EQUIVALENCE, |a| a.equivalence.map(|e| e.tests.p)),
 ];
 
 /// The test that no clustered data should be judged by; right where each participant makes one choice.
@@ -58,22 +56,18 @@ pub(super) const PER_TRIAL: &str = "binomial test of all choices, ignoring who m
 const SECOND: &str = "sign test of the counts";
 /// Beside the t-test, before [`SECOND`].
 const HOLM: &str = "t-test, Holm over blocks";
+const EQUIVALENCE: &str = "equivalence within the study's bound";
 const SCALE: &str = "difference on the scale";
-
-fn equivalence(analysis: &ChoiceAnalysis, bounds: Bounds) -> Option<f64> {
-    analysis.equivalence.iter().find(|e| e.bounds == bounds).map(|e| e.p)
-}
 
 impl Claims {
     pub(super) fn new(design: &Design) -> Claims {
         let (mut tests, mut intervals) = (Vec::new(), Vec::new());
         let analysed: Vec<usize> =
             (0..design.study.blocks.len()).filter(|&b| !design.study.blocks[b].catch).collect();
+        let bound = design.study.equivalence.as_ref().map(|bound| bound.within);
         for &b in &analysed {
             let block = &design.study.blocks[b];
-            let moments = moments(design, b);
-            let mean = moments.as_ref().map_or(f64::NAN, |m| m.shares.iter().sum());
-            let variance = moments.map_or(f64::NAN, |m| m.variance);
+            let mean = chances(design, b).map_or(f64::NAN, |chances| chances.iter().sum());
             let share = Some(mean / block.items.len() as f64).filter(|share| share.is_finite());
             let distance = (mean - block.mu()).abs();
             let of = || block.id.clone();
@@ -83,8 +77,7 @@ impl Claims {
                 }
                 let null = match test {
                     // What is equal is equivalent: there those tests have power.
-                    "equivalence within ±0.5 choices" => distance >= 0.5,
-                    "equivalence within ±0.5 SD" => distance >= 0.5 * variance.sqrt(),
+                    EQUIVALENCE => bound.is_none_or(|within| distance >= within * block.items.len() as f64),
                     _ => distance < 1e-12,
                 };
                 // With one choice a participant there is nobody to ignore.
@@ -96,7 +89,7 @@ impl Claims {
                 _ => None,
             };
             for (interval, truth) in [
-                ("share of target choices, participants resampled", share),
+                ("share of target choices, over participants", share),
                 ("share of target choices, ignoring who made them (Wilson)", share),
                 ("threshold, posterior", threshold),
                 ("threshold, participants resampled", threshold),
@@ -121,7 +114,7 @@ impl Claims {
             });
             intervals.push(IntervalClaim {
                 of,
-                interval: "difference in JOD, participants resampled",
+                interval: "difference in JOD, over participants",
                 truth: *truth,
             });
         }
@@ -142,22 +135,22 @@ impl Claims {
                 tests.push(p(analysis).map(|p| p < alpha));
             }
             let proportion = analysis.proportion.as_ref();
-            let resampled = proportion.and_then(|p| p.by_participant.as_ref());
             if !steered {
-                intervals.push(resampled.map(|b| [b.low, b.high]));
+                let over_participants = proportion.and_then(|p| p.interval());
+                intervals.push(over_participants.map(|i| [i.low, i.high]));
                 intervals.push(proportion.map(|p| [p.wilson.low, p.wilson.high]));
             }
             if let Some(psychometric) = &block.psychometric {
                 let fit = psychometric.fit.as_ref();
                 intervals.push(fit.map(|f| [f.threshold.low, f.threshold.high]));
                 let resampled = fit.and_then(|f| f.threshold_by_participant.as_ref());
-                intervals.push(resampled.map(|b| [b.low, b.high]));
+                intervals.push(resampled.map(|found| [found.bootstrap.low, found.bootstrap.high]));
             }
         }
         for i in 0..self.differences {
             let found = report.scale.as_ref().and_then(|scale| scale.differences.get(i));
             tests.push(found.map(|d| d.p < alpha));
-            intervals.push(found.map(|d| [d.low, d.high]));
+            intervals.push(found.and_then(|d| Some([d.low?, d.high?])));
         }
         Outcome { tests, intervals }
     }
@@ -178,7 +171,7 @@ fn true_differences(design: &Design) -> Vec<(String, String, Option<f64>)> {
         for (b, (block, _)) in compared() {
             let place = |name: &str| names.iter().position(|known| known == name);
             let (target, other) = (place(&block.target)?, place(block.other())?);
-            for chance in moments(design, b)?.shares {
+            for chance in chances(design, b)? {
                 if !(1e-6..=1.0 - 1e-6).contains(&chance) {
                     return None;
                 }

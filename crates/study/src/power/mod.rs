@@ -16,7 +16,9 @@ use crate::screening::screen;
 use crowd::Crowd;
 use findings::{Claims, Outcome};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use utoipa::ToSchema;
 
 /// What simulated studies of several sizes found.
@@ -36,7 +38,7 @@ pub struct Power {
     pub power: f64,
     /// Level of the intervals.
     pub level: f64,
-    /// Resamples of each bootstrap.
+    /// Resamples of a threshold's bootstrap.
     pub replicates: usize,
     /// By number of participants, rising.
     pub sizes: Vec<Size>,
@@ -99,44 +101,52 @@ pub struct Needed {
     pub rate: Rate,
 }
 
-/// Simulated studies whose sums are kept apart, so that the result does not depend on which thread did what.
-const BATCH: u64 = 8;
+/// Told after each simulated study of every size: how many there have been, and what they come to so far.
+pub type Watch<'a> = &'a (dyn Fn(u64, &dyn Fn() -> Power) + Sync);
 
-/// Simulates the design on every core. `progress` is told how many of `simulations` are done, from any thread.
-pub fn power(design: &Design, progress: &(dyn Fn(u64) + Sync)) -> Power {
+/// Simulates the design on so many threads. Studies are added up in their order, whichever thread did them and when: neither the result nor what
+/// `watch` is told after so many of them depends on the threads.
+pub fn power(design: &Design, threads: usize, watch: Watch<'_>) -> Power {
     let crowd = Crowd::new(design);
     let claims = Claims::new(design);
-    let batches = design.simulations.div_ceil(BATCH);
-    let (next, done) = (AtomicU64::new(0), AtomicU64::new(0));
-    let work = || {
-        let mut sums = Vec::new();
-        loop {
-            let batch = next.fetch_add(1, Ordering::Relaxed);
-            if batch >= batches {
-                return sums;
-            }
-            let mut sum = Sums::new(design, &claims);
-            for run in batch * BATCH..design.simulations.min((batch + 1) * BATCH) {
-                sum.add(&crowd, &claims, run);
-                progress(done.fetch_add(1, Ordering::Relaxed) + 1);
-            }
-            sums.push((batch, sum));
+    let next = AtomicU64::new(0);
+    let line = Mutex::new(Line { total: Sums::new(design, &claims), added: 0, waiting: BTreeMap::new() });
+    let work = || loop {
+        let run = next.fetch_add(1, Ordering::Relaxed);
+        if run >= design.simulations {
+            return;
         }
+        let mut sums = Sums::new(design, &claims);
+        sums.add(&crowd, &claims, run);
+        let mut line = line.lock().unwrap_or_else(PoisonError::into_inner);
+        line.waiting.insert(run, sums);
+        line.advance(|total, added| watch(added, &|| total.power(design, &claims, added)));
     };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut sums = std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
-        let mut sums = work();
-        // A thread that fails has no sums: their studies are missing from every rate's `runs`.
-        sums.extend(others.into_iter().filter_map(|thread| thread.join().ok()).flatten());
-        sums
+    std::thread::scope(|scope| {
+        (1..threads).for_each(|_| drop(scope.spawn(work)));
+        work();
     });
-    sums.sort_by_key(|(batch, _)| *batch);
-    let mut total = Sums::new(design, &claims);
-    for (_, sum) in &sums {
-        total.merge(sum);
+    let line = line.into_inner().unwrap_or_else(PoisonError::into_inner);
+    line.total.power(design, &claims, line.added)
+}
+
+/// Simulated studies as they are added up: in their order.
+struct Line {
+    total: Sums,
+    added: u64,
+    /// Those that were done before an earlier one was.
+    waiting: BTreeMap<u64, Sums>,
+}
+
+impl Line {
+    /// Adds whatever is next; `tell` hears of each.
+    fn advance(&mut self, tell: impl Fn(&Sums, u64)) {
+        while let Some(sums) = self.waiting.remove(&self.added) {
+            self.total.merge(&sums);
+            self.added += 1;
+            tell(&self.total, self.added);
+        }
     }
-    total.power(design, &claims)
 }
 
 /// Sums over simulated studies, by size.
@@ -240,7 +250,7 @@ impl Sums {
         }
     }
 
-    fn power(&self, design: &Design, claims: &Claims) -> Power {
+    fn power(&self, design: &Design, claims: &Claims, simulations: u64) -> Power {
         let made: Vec<usize> = (0..claims.tests.len())
             .filter(|&i| self.sizes.iter().any(|sums| sums.tests[i].defined > 0))
             .collect();
@@ -290,7 +300,7 @@ impl Sums {
         Power {
             study: design.study.id.clone(),
             design_hash: design.study.design_hash(),
-            simulations: design.simulations,
+            simulations,
             seed: design.seed,
             alpha: design.alpha,
             power: design.power,

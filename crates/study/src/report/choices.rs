@@ -3,13 +3,13 @@
 use crate::analysis::TTest;
 use kelir_stats::StatsError;
 use kelir_stats::clustered::{
-    Bootstrap, BootstrapMethod, Cluster, Correction, IccEstimator, Intraclass, MixedLogit, RobustLogit, Row,
-    bootstrap, independence_warning, intraclass, mixed_logit, robust_logit,
+    Cluster, Correction, IccEstimator, Intraclass, MixedLogit, RobustLogit, Row, ShareInterval,
+    independence_warning, intraclass, mixed_logit, robust_logit, share_interval,
 };
 use kelir_stats::inference::{
-    BinomialTest, Bounds, EffectSize, Equivalence, Interval, JzsBayesFactor, ORDINARY_PRIOR_SCALE,
-    SignedRank, TPlan, binomial_test, detectable_effect_t, effect_size, equivalence, jzs_bayes_factor,
-    power_t, sign_test, t_test_from_counts, wilcoxon_signed_rank, wilson,
+    BinomialTest, EffectSize, Interval, JzsBayesFactor, ORDINARY_PRIOR_SCALE, ShareEquivalence, SignedRank,
+    TPlan, binomial_test, detectable_effect_t, effect_size, jzs_bayes_factor, power_t, share_equivalence,
+    sign_test, t_test_from_counts, wilcoxon_signed_rank, wilson,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -33,8 +33,9 @@ pub struct ChoiceAnalysis {
     pub t_test: TTest,
     /// Cohen's d and Hedges' g with their intervals; null where t is not defined.
     pub effect: Option<EffectSize>,
-    /// Two one-sided tests: is the mean equivalent to half the pairs, within ±0.5 choices and within ±0.5 SD?
-    pub equivalence: Vec<Equivalence>,
+    /// Two one-sided tests: is the share of target choices equivalent to ½, within the study file's bound? Null where it states none, or where t
+    /// is not defined.
+    pub equivalence: Option<ShareEquivalence>,
     /// Evidence for and against "no effect".
     pub bayes: Option<JzsBayesFactor>,
     /// Power of this test with as many participants, for true effects of [`POWER_EFFECTS`].
@@ -49,7 +50,7 @@ pub struct ChoiceAnalysis {
     /// Exact binomial test of all choices against ½. It counts every choice as independent: right where each participant
     /// made one, else see the clustered results.
     pub binomial: Option<BinomialTest>,
-    /// Target choices over all trials, with an interval from resampled participants.
+    /// Target choices over all trials.
     pub proportion: Option<Proportion>,
     /// How alike one participant's choices are.
     pub intraclass: Option<Intraclass>,
@@ -68,20 +69,38 @@ pub struct Proportion {
     pub chosen: u64,
     /// Choices made.
     pub trials: u64,
+    /// Participants who made them.
+    pub participants: u64,
     /// chosen / trials.
     pub proportion: f64,
     /// Wilson's interval, which takes the choices as independent: right where each participant made one.
     pub wilson: Interval,
-    /// The interval from resampled participants; null with fewer than two.
-    pub by_participant: Option<Bootstrap>,
+    /// The interval over participants, which a report shows; null where the choices give none.
+    pub by_participant: Option<ShareInterval>,
+    /// Why they give none.
+    pub note: Option<String>,
 }
 
 impl Proportion {
-    /// The share of `chosen` among `trials`; `None` without trials.
-    pub fn of(chosen: u64, trials: u64) -> Option<Proportion> {
-        let wilson = wilson(chosen, trials, LEVEL).ok()?;
-        let proportion = chosen as f64 / trials as f64;
-        Some(Proportion { chosen, trials, proportion, wilson, by_participant: None })
+    /// The share of target choices, one cluster a participant; `None` without choices.
+    pub fn of(clusters: &[Cluster]) -> Option<Proportion> {
+        let sum = |of: fn(&Cluster) -> u64| clusters.iter().map(of).sum::<u64>();
+        let (chosen, trials) = (sum(|c| c.successes), sum(|c| c.trials));
+        let mut notes = Vec::new();
+        Some(Proportion {
+            chosen,
+            trials,
+            participants: sum(|c| u64::from(c.trials > 0)),
+            proportion: chosen as f64 / trials as f64,
+            wilson: wilson(chosen, trials, LEVEL).ok()?,
+            by_participant: keep("interval of the share", share_interval(clusters, LEVEL), &mut notes),
+            note: notes.pop(),
+        })
+    }
+
+    /// The interval that a report shows.
+    pub fn interval(&self) -> Option<Interval> {
+        self.by_participant.map(|ShareInterval { low, high, level, .. }| Interval { low, high, level })
     }
 }
 
@@ -91,7 +110,7 @@ impl ChoiceAnalysis {
         ChoiceAnalysis {
             t_test: TTest { note: why.clone(), ..TTest::default() },
             effect: None,
-            equivalence: Vec::new(),
+            equivalence: None,
             bayes: None,
             power: Vec::new(),
             detectable: None,
@@ -106,8 +125,9 @@ impl ChoiceAnalysis {
         }
     }
 
-    /// Judges `counts`: number of target choices out of `pairs` → number of participants. `seed` repeats the bootstrap.
-    pub fn of_counts(counts: &BTreeMap<u32, u64>, items: u32, seed: u64) -> ChoiceAnalysis {
+    /// Judges `counts`: number of target choices out of `items` → number of participants; `within`: how far from ½ a share may lie and still count
+    /// as equivalent to it.
+    pub fn of_counts(counts: &BTreeMap<u32, u64>, items: u32, within: Option<f64>) -> ChoiceAnalysis {
         let mu = f64::from(items) / 2.0;
         let t_test = TTest::of_counts(counts, mu);
         let mut notes = Vec::new();
@@ -116,19 +136,27 @@ impl ChoiceAnalysis {
         let judged = t_test_from_counts(&table, mu).ok();
         let mut effect = None;
         let mut bayes = None;
-        let (mut equivalences, mut power, mut detectable) = (Vec::new(), Vec::new(), None);
+        let (mut equivalence, mut power, mut detectable) = (None, Vec::new(), None);
         if let Some(test) = &judged {
             effect = keep("effect size", effect_size(test, LEVEL), &mut notes);
             bayes = keep("Bayes factor", jzs_bayes_factor(test, ORDINARY_PRIOR_SCALE), &mut notes);
-            for bounds in [Bounds::Points(0.5), Bounds::Sd(0.5)] {
-                equivalences.extend(keep("equivalence", equivalence(test, bounds), &mut notes));
-            }
+            equivalence = within.and_then(|within| {
+                keep("test of equivalence", share_equivalence(test, items, within), &mut notes)
+            });
             let powers = POWER_EFFECTS.iter().map(|d| power_t(test.n, *d, ALPHA));
             power = powers.filter_map(Result::ok).collect();
             detectable =
                 keep("detectable effect", detectable_effect_t(test.n, ALPHA, DETECTION_POWER), &mut notes);
-            if test.p >= ALPHA && equivalences.iter().any(|e| e.p >= ALPHA) {
-                let line = "A difference that is not significant is not shown to be absent: see the tests of equivalence and the Bayes factor.";
+            if test.p >= ALPHA && equivalence.is_none_or(|e| e.tests.p >= ALPHA) {
+                let line = match equivalence {
+                    Some(_) => {
+                        "A difference that is not significant is not shown to be absent: see the test of equivalence and the Bayes factor."
+                    }
+                    None => {
+                        "A difference that is not significant is not shown to be absent: see the Bayes factor. The study file states no bound \
+                             within which a share would count as equivalent to a half."
+                    }
+                };
                 notes.push(line.to_owned());
             }
         }
@@ -143,7 +171,8 @@ impl ChoiceAnalysis {
         // Both leave out who is at half the pairs; with nobody else there is nothing to test, which t's note has said.
         let sign = sign_test(&numbers, mu).ok();
         let wilcoxon = wilcoxon_signed_rank(&numbers, mu).ok();
-        let proportion = proportion(&clusters, seed);
+        let proportion = Proportion::of(&clusters);
+        notes.extend(proportion.as_ref().and_then(|p| p.note.clone()));
         let binomial = proportion.as_ref().and_then(|p| binomial_test(p.chosen, p.trials, 0.5).ok());
         let several = items > 1 && clusters.len() > 1;
         let mut intraclass_found = None;
@@ -157,7 +186,7 @@ impl ChoiceAnalysis {
                 mixed = keep("random-intercept logit", mixed_logit(&rows), &mut notes);
                 notes.extend(independence_warning(&clusters).ok().flatten().map(|warning| {
                     format!(
-                        "The binomial test and Wilson's interval of the overall proportion are per-trial ones. {}",
+                        "The binomial test and Wilson's interval of all choices are per-trial ones. {}",
                         warning.message
                     )
                 }));
@@ -166,7 +195,7 @@ impl ChoiceAnalysis {
         ChoiceAnalysis {
             t_test,
             effect,
-            equivalence: equivalences,
+            equivalence,
             bayes,
             power,
             detectable,
@@ -180,18 +209,6 @@ impl ChoiceAnalysis {
             notes,
         }
     }
-}
-
-fn proportion(clusters: &[Cluster], seed: u64) -> Option<Proportion> {
-    let sum = |of: fn(&Cluster) -> u64| clusters.iter().map(of).sum::<u64>();
-    let mut proportion = Proportion::of(sum(|c| c.successes), sum(|c| c.trials))?;
-    let share = |drawn: &[&Cluster]| {
-        let (chosen, trials) = drawn.iter().fold((0, 0), |(a, b), c| (a + c.successes, b + c.trials));
-        (trials > 0).then(|| chosen as f64 / trials as f64)
-    };
-    proportion.by_participant =
-        bootstrap(clusters, REPLICATES, LEVEL, seed, BootstrapMethod::Percentile, share).ok();
-    Some(proportion)
 }
 
 /// What came out, or `None` and a note that says why not.

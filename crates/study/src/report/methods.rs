@@ -2,8 +2,9 @@
 
 mod design;
 
-use super::{ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, REPLICATES, Report};
+use super::{ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, REPLICATES, Report, scaling};
 use crate::definition::{GUESS, StudyDefinition};
+use kelir_stats::clustered::ShareMethod;
 use kelir_stats::pairwise::Estimator;
 
 const HEDGES: &str = "Hedges, L. V. (1981). Distribution theory for Glass's estimator of effect size and related estimators. Journal of \
@@ -35,19 +36,36 @@ const WICHMANN: &str = "Wichmann, F. A., & Hill, N. J. (2001). The psychometric 
 const FIRTH: &str =
     "Firth, D. (1993). Bias reduction of maximum likelihood estimates. Biometrika, 80(1), 27–38.";
 
+const KOSMIDIS: &str = "Kosmidis, I., & Firth, D. (2021). Jeffreys-prior penalty, finiteness and shrinkage in binomial-response generalized linear models. \
+     Biometrika, 108(1), 71–82.";
+const EFRON: &str = "Efron, B., & Stein, C. (1981). The jackknife estimate of variance. The Annals of Statistics, 9(3), 586–596.";
+const HEMERIK: &str = "Hemerik, J., Goeman, J. J., & Finos, L. (2020). Robust testing in generalized linear models by sign flipping score contributions. \
+     Journal of the Royal Statistical Society: Series B, 82(3), 841–864.";
+const CLOPPER: &str = "Clopper, C. J., & Pearson, E. S. (1934). The use of confidence or fiducial limits illustrated in the case of the binomial. \
+     Biometrika, 26(4), 404–413.";
+const DEAN: &str = "Dean, N., & Pagano, M. (2015). Evaluating confidence interval methods for binomial proportions in clustered surveys. Journal of \
+     Survey Statistics and Methodology, 3(4), 484–503.";
+const STUDENT: &str = "Student (1908). The probable error of a mean. Biometrika, 6(1), 1–25.";
+const DIXON: &str = "Dixon, W. J., & Mood, A. M. (1946). The statistical sign test. Journal of the American Statistical Association, 41(236), 557–566.";
+const PINHEIRO: &str = "Pinheiro, J. C., & Bates, D. M. (1995). Approximations to the log-likelihood function in the nonlinear mixed-effects model. \
+     Journal of Computational and Graphical Statistics, 4(1), 12–35.";
+const SELF: &str = "Self, S. G., & Liang, K.-Y. (1987). Asymptotic properties of maximum likelihood estimators and likelihood ratio tests under nonstandard \
+     conditions. Journal of the American Statistical Association, 82(398), 605–610.";
+const JEFFREYS: &str = "Jeffreys, H. (1961). Theory of probability (3rd ed.). Oxford University Press.";
+
 /// Paragraphs of methods, and references, for what `report` holds.
 pub(super) fn of(study: &StudyDefinition, report: &Report) -> (Vec<String>, Vec<String>) {
     let mut text = Text::default();
     design::say(&mut text, study);
     text.say(screening(study), &[]);
     if any(report, |a| a.t_test.t.is_some()) {
-        tests(&mut text, report);
+        tests(&mut text, study, report);
     }
     if any(report, |a| a.proportion.is_some()) {
-        proportions(&mut text, study, report);
+        proportions(&mut text, report);
     }
     psychometric(&mut text, report);
-    scale(&mut text, report);
+    scale(&mut text, study, report);
     (text.paragraphs, text.references)
 }
 
@@ -93,26 +111,41 @@ fn screening(study: &StudyDefinition) -> String {
         excluded.push("who did not finish".to_owned());
     }
     let counted = "Of each person one session was analysed, the first complete one (where none was complete, the first with answers); trial runs \
-         and simulations were not. Each block counts the participants who answered all its items.";
+         and simulations were not. Tests and the share of all choices of a block count the participants who answered all its items; the shares of single \
+         items and of sides, response times, psychometric functions and the scale take the answers of everybody.";
     if excluded.is_empty() {
         format!("The study file states no rules of exclusion, and nobody was excluded. {counted}")
     } else {
         let who = excluded.join("; ");
         format!(
-            "By rules stated in the study file before data were seen, participants were excluded {who}. {counted}"
+            "By rules in the study file, which are part of the version that participants answered, participants were excluded {who}. {counted}"
         )
     }
 }
 
-fn tests(text: &mut Text, report: &Report) {
-    let tested = report.blocks.iter().filter(|b| b.p_holm.is_some()).count();
+fn tests(text: &mut Text, study: &StudyDefinition, report: &Report) {
+    let tested = report.blocks.iter().filter(|b| b.planned).count();
     let holm = if tested > 1 {
         format!(
-            " P-values are also given corrected by Holm's method for {tested} blocks: the k-th smallest is multiplied by {tested} + 1 − k, and is \
-             never below the one before nor above 1."
+            " P-values are also given corrected by Holm's method for the {tested} planned tests, whether or not each is defined: the k-th smallest is \
+             multiplied by {tested} + 1 − k, and is never below the one before nor above 1."
         )
     } else {
         String::new()
+    };
+    let unplanned: Vec<String> = report
+        .blocks
+        .iter()
+        .filter(|b| !b.planned && b.summary.p.is_some())
+        .map(|b| b.summary.title.clone())
+        .collect();
+    let holm = if unplanned.is_empty() {
+        holm
+    } else {
+        format!(
+            "{holm} The study file plans no such test of {}; it is given uncorrected, and nothing is concluded from it.",
+            unplanned.join(", ")
+        )
     };
     text.say(
         format!(
@@ -120,19 +153,28 @@ fn tests(text: &mut Text, report: &Report) {
              μ₀, by a two-tailed one-sample t-test: t = (M − μ₀) / (SD / √n) with n − 1 degrees of freedom, where M is the mean over the n \
              participants and SD their standard deviation with n − 1 in the denominator.{holm}"
         ),
-        if tested > 1 { &[HOLM] } else { &[] },
+        if tested > 1 { &[STUDENT, HOLM] } else { &[STUDENT] },
     );
     text.say(
         format!(
             "Effect sizes are Cohen's d = (M − μ₀) / SD and Hedges' g = J d with J = Γ(ν/2) / (√(ν/2) Γ((ν − 1)/2)) and ν = n − 1, with {:.0}% \
-             intervals from the noncentral t distribution. Equivalence to μ₀ was tested by two one-sided t-tests with bounds of ±0.5 choices \
-             and of ±0.5 SD; the larger of the two p-values is given. The Bayes factor is that of Jeffreys, Zellner and Siow for a standardised effect with a Cauchy \
+             intervals from the noncentral t distribution. The Bayes factor is that of Jeffreys, Zellner and Siow for a standardised effect with a Cauchy \
              prior of scale √2/2 against no effect. Without the assumption of normality the same numbers were compared with μ₀ by an exact \
              sign test and by Wilcoxon's signed-rank test with the exact distribution of tied ranks (above 500 values, its normal approximation); both leave out participants at μ₀.",
             100.0 * LEVEL
         ),
-        &[HEDGES, STEIGER, SCHUIRMANN, ROUDER, WILCOXON],
+        &[HEDGES, STEIGER, ROUDER, JEFFREYS, DIXON, WILCOXON],
     );
+    if let Some(bound) = &study.equivalence {
+        text.say(
+            format!(
+                "Equivalence of the share of target choices to one half was tested by two one-sided t-tests with bounds of ±{} on the share; the larger of \
+                 the two p-values is given. The study file's reason for the bound: {}",
+                bound.within, bound.reason
+            ),
+            &[SCHUIRMANN],
+        );
+    }
     let effects = POWER_EFFECTS.map(|d| d.to_string()).join(", ");
     text.say(
         format!(
@@ -144,14 +186,37 @@ fn tests(text: &mut Text, report: &Report) {
     );
 }
 
-fn proportions(text: &mut Text, study: &StudyDefinition, report: &Report) {
-    let mut said = format!(
-        "The interval of the share of all choices comes from {REPLICATES} resamples of whole participants (percentile method, seed {}), \
-         because choices of one participant are not independent; intervals of single items, to which each participant gave one answer, are Wilson's. \
-         The binomial test is the exact two-sided one (the sum of the probabilities of all outcomes no likelier than the one seen).",
-        study.seed
+fn proportions(text: &mut Text, report: &Report) {
+    let shares = || {
+        let all = report.blocks.iter().flat_map(|block| {
+            let levels = block.psychometric.iter().flat_map(|p| &p.points).map(|point| &point.target);
+            let items = block.by_item.iter().map(|item| &item.target);
+            [&block.analysis.proportion, &block.first].into_iter().chain(items).chain(levels)
+        });
+        all.flatten().filter_map(|share| share.by_participant.map(|found| found.method))
+    };
+    let mut said =
+        "Intervals of shares are over participants, because choices of one participant are not independent."
+            .to_owned();
+    let mut references = Vec::new();
+    if shares().any(|method| method == ShareMethod::Wilson) {
+        said.push_str(" Where each made one choice they are Wilson's.");
+        references.push(WILSON);
+    }
+    if shares().any(|method| method == ShareMethod::ClusteredWilson) {
+        said.push_str(
+            " Where some made several they are Wilson's with the number of choices divided by their design effect, estimated from how participants \
+             spread (half of one who always and half of one who never chose the target added to them) and never below 1.",
+        );
+        references.extend([WILSON, DEAN]);
+    }
+    if shares().any(|method| method == ShareMethod::ClopperPearson) {
+        said.push_str(" Where all of several choices each were one, every participant counts once, in Clopper and Pearson's interval.");
+        references.push(CLOPPER);
+    }
+    said.push_str(
+        " The binomial test is the exact two-sided one (the sum of the probabilities of all outcomes no likelier than the one seen).",
     );
-    let mut references = vec![DAVISON, WILSON];
     if any(report, |a| a.intraclass.is_some()) {
         said.push_str(
             " The intraclass correlation is 1 − Σ yᵢ(nᵢ − yᵢ)/nᵢ / ((N − m) p(1 − p)) for m participants with yᵢ target choices of nᵢ, N in \
@@ -169,8 +234,9 @@ fn proportions(text: &mut Text, study: &StudyDefinition, report: &Report) {
     if any(report, |a| a.mixed_logit.is_some()) {
         said.push_str(
             " A logistic regression with a normal random intercept per participant was fitted by maximum likelihood, each participant's integral by \
-             adaptive quadrature.",
+             adaptive quadrature; its standard deviation was tested by the likelihood ratio, half χ² of 0 and half of 1 degree of freedom.",
         );
+        references.extend([PINHEIRO, SELF]);
     }
     text.say(said, &references);
 }
@@ -188,25 +254,34 @@ fn psychometric(text: &mut Text, report: &Report) {
              deviance against that of simulated observers, each fitted anew.",
             100.0 * LEVEL
         ),
-        &[SCHUETT, WICHMANN],
+        &[SCHUETT, WICHMANN, DAVISON],
     );
 }
 
-fn scale(text: &mut Text, report: &Report) {
+fn scale(text: &mut Text, study: &StudyDefinition, report: &Report) {
     let Some(found) = &report.scale else { return };
-    let mut references = vec![THURSTONE, PEREZ];
-    let separated = if found.scale.estimator == Estimator::Jeffreys || found.penalised > 0 {
-        references.push(FIRTH);
-        " Where choices were separated, so that no finite maximum exists, the likelihood was multiplied by Jeffreys' prior."
+    let mut references = vec![THURSTONE, PEREZ, EFRON, FIRTH, KOSMIDIS, HEMERIK];
+    let separated = if found.scale.estimator == Estimator::Jeffreys {
+        " Choices were separated, so that no finite maximum exists; the likelihood was multiplied by Jeffreys' prior."
     } else {
         ""
     };
+    let patterns = match (found.differences.iter().all(|d| d.p_exact), found.flips) {
+        (true, _) => "over all patterns of signs".to_owned(),
+        (false, flips) => format!("over {flips} random patterns of signs, seed {}", found.seed),
+    };
     let mut said = format!(
         "All conditions were placed on one axis by maximum likelihood of Thurstone's Case V: P(a chosen over b) = Φ((q(a) − q(b)) / 1.4826), so that a \
-         difference of 1 just-objectionable difference (JOD) is a choice by 75%; positions are relative to their mean.{separated} Intervals come \
-         from {} resamples of the {} participants (percentile method, seed {}).",
-        found.replicates, found.observers, found.seed
+         difference of 1 just-objectionable difference (JOD) is a choice by 75%; positions are relative to their mean.{separated} {} Intervals are \
+         the position or difference ± t × its standard error, with {} degrees of freedom, the standard error from leaving out each of the {} \
+         participants in turn (jackknife, the scale fitted with Jeffreys' prior). Each difference was tested against none by flipping the signs of \
+         participants' effective scores, {patterns}; Holm's method corrects for the {} differences.",
+        scaling::pooled(study),
+        found.observers - 1,
+        found.observers,
+        found.differences.len()
     );
+    references.push(HOLM);
     if let Some(consistency) = &report.consistency {
         if consistency.triads.triads > 0 {
             said.push_str(" Circular triads were counted per participant.");
@@ -215,7 +290,8 @@ fn scale(text: &mut Text, report: &Report) {
         if consistency.observers > 0 {
             said.push_str(
                 " Each participant's choices were predicted from the scale of all the others; whoever lies more than 1.5 interquartile ranges below \
-                 the first quartile of the mean log likelihoods is listed, not excluded.",
+                 the first quartile of the mean log likelihoods (where that range is 0, more than 3 standard deviations below expectation) is listed, \
+                 not excluded.",
             );
         }
     }
@@ -223,6 +299,6 @@ fn scale(text: &mut Text, report: &Report) {
 }
 
 /// "1 pair", "2 items".
-fn count(n: usize, what: &str) -> String {
+pub(super) fn count(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }

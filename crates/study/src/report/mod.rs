@@ -15,6 +15,7 @@ use crate::analysis::{BlockSummary, summarise};
 use crate::answers::{Given, Participant, blocks};
 use crate::definition::{Block, StudyDefinition};
 use crate::trials::Role;
+use kelir_stats::clustered::{Cluster, IccEstimator, Intraclass, intraclass};
 use kelir_stats::inference::holm;
 use kelir_stats::pairwise::ScaleIntervals;
 use serde::Serialize;
@@ -26,8 +27,10 @@ use utoipa::ToSchema;
 pub struct Report {
     /// Each block, in study order.
     pub blocks: Vec<BlockReport>,
-    /// All conditions on one axis, in JOD, where the blocks join them; with an interval from resampled participants.
+    /// All conditions on one axis, in JOD, where the blocks join them; with intervals and tests over participants.
     pub scale: Option<ScaleIntervals>,
+    /// What was shown in the choices that a scale takes together.
+    pub scale_pools: String,
     /// Why there is no scale.
     pub scale_note: Option<String>,
     /// How far observers contradict that scale and themselves; null without one.
@@ -44,7 +47,10 @@ pub struct BlockReport {
     /// Counts and the paper's test.
     #[serde(flatten)]
     pub summary: BlockSummary,
-    /// p corrected by Holm's method for the number of blocks; null where p is.
+    /// Whether its t-test was planned: of an adaptive block it never is, of one with a psychometric function where the file says so.
+    pub planned: bool,
+    /// p corrected by Holm's method for all planned tests, those that are not defined among them; null where p is, and of a test that was not
+    /// planned.
     pub p_holm: Option<f64>,
     /// What is beside the paper's test.
     pub analysis: ChoiceAnalysis,
@@ -56,6 +62,9 @@ pub struct BlockReport {
     pub first_role: Role,
     /// Choices of what stood first, over all trials of the block: far from a half shows a bias of side, or of order.
     pub first: Option<Proportion>,
+    /// How alike one participant's choices of what stood first are: above 0, some lean to one side and some to the other, which cancels in the share.
+    /// Null where nobody answered twice, or all chose one side.
+    pub first_intraclass: Option<Intraclass>,
     /// Response times in ms; null without answers.
     pub rt_ms: Option<Quartiles>,
     /// Their 1st to 99th percentile, interpolated likewise; empty without answers.
@@ -67,7 +76,7 @@ pub struct BlockReport {
 pub struct ItemReport {
     /// Item's id.
     pub id: String,
-    /// Share of target choices; one trial a participant, so Wilson's interval is right. Null without answers.
+    /// Share of target choices, by everybody who answered it. Null without answers.
     pub target: Option<Proportion>,
 }
 
@@ -89,13 +98,19 @@ impl Report {
     /// study's seed.
     pub fn of(study: &StudyDefinition, participants: &[&Participant]) -> Report {
         let summaries = summarise(study, participants);
-        let defined: Vec<f64> = summaries.iter().filter_map(|s| s.p).collect();
-        let mut corrected = holm(&defined).unwrap_or_default().into_iter();
-        let blocks = blocks(study)
-            .filter(|(block, _)| !block.catch)
+        let analysed = || blocks(study).filter(|(block, _)| !block.catch);
+        // What was planned is tested whether or not its t came out defined: an undefined one rejects nothing, and counts.
+        let planned: Vec<f64> = analysed()
+            .zip(&summaries)
+            .filter(|((block, _), _)| block.plans_t_test())
+            .map(|(_, summary)| summary.p.unwrap_or(1.0))
+            .collect();
+        let mut corrected = holm(&planned).unwrap_or_default().into_iter();
+        let blocks = analysed()
             .zip(summaries)
             .map(|((block, items), summary)| {
-                let p_holm = summary.p.and_then(|_| corrected.next());
+                let corrected = if block.plans_t_test() { corrected.next() } else { None };
+                let p_holm = summary.p.and(corrected);
                 block_report(study, block, &items, summary, p_holm, participants)
             })
             .collect();
@@ -103,8 +118,15 @@ impl Report {
             Ok((scale, consistency)) => (Some(scale), Some(consistency), None),
             Err(note) => (None, None, Some(note)),
         };
-        let mut report =
-            Report { blocks, scale, scale_note, consistency, methods: Vec::new(), references: Vec::new() };
+        let mut report = Report {
+            blocks,
+            scale,
+            scale_pools: scaling::pooled(study),
+            scale_note,
+            consistency,
+            methods: Vec::new(),
+            references: Vec::new(),
+        };
         (report.methods, report.references) = methods::of(study, &report);
         report
     }
@@ -119,42 +141,50 @@ fn block_report(
     participants: &[&Participant],
 ) -> BlockReport {
     let analysis = match block.adaptive {
-        None => ChoiceAnalysis::of_counts(&summary.counts, summary.items as u32, study.seed),
+        None => {
+            let within = study.equivalence.as_ref().map(|bound| bound.within);
+            ChoiceAnalysis::of_counts(&summary.counts, summary.items as u32, within)
+        }
         Some(_) => ChoiceAnalysis::none(&summary.note),
     };
     let seen: Vec<&[Given]> = participants.iter().map(|p| p.answers_to(places)).collect();
     let given = || seen.iter().copied().flatten();
-    let (mut chosen, mut trials) = (vec![0; block.items.len()], vec![0; block.items.len()]);
+    // One trial a participant and item, but in adaptive blocks.
+    let mut of_item = vec![Vec::new(); block.items.len()];
     for answer in given() {
-        let pair = (answer.item - places.start) as usize;
-        trials[pair] += 1;
-        chosen[pair] += u64::from(answer.chose_target);
+        let cluster = Cluster { successes: u64::from(answer.chose_target), trials: 1 };
+        of_item[(answer.item - places.start) as usize].push(cluster);
     }
     let by_item = block
         .items
         .iter()
-        .zip(chosen.into_iter().zip(trials))
+        .zip(&of_item)
         .filter(|_| block.adaptive.is_none())
-        .map(|(pair, (chosen, trials))| ItemReport {
-            id: pair.id.clone(),
-            target: Proportion::of(chosen, trials),
-        })
+        .map(|(pair, clusters)| ItemReport { id: pair.id.clone(), target: Proportion::of(clusters) })
         .collect();
     let psychometric = psychometric::of(block, places, &seen, study.seed);
     let mut times: Vec<f64> = given().map(|answer| answer.rt_ms).filter(|ms| ms.is_finite()).collect();
     times.sort_by(f64::total_cmp);
-    let firsts = given().filter(|answer| answer.chose_first).count() as u64;
+    let firsts: Vec<Cluster> = seen.iter().map(|answers| firsts(answers)).collect();
     BlockReport {
+        planned: block.plans_t_test(),
         p_holm,
         analysis,
         by_item,
         psychometric,
         first_role: block.trial.rules().roles()[0],
-        first: Proportion::of(firsts, given().count() as u64),
+        first: Proportion::of(&firsts),
+        first_intraclass: intraclass(&firsts, IccEstimator::FleissCuzick).ok(),
         rt_ms: Quartiles::of_sorted(&times),
         rt_percentiles_ms: (1..100).filter_map(|p| quantile(&times, f64::from(p) / 100.0)).collect(),
         summary,
     }
+}
+
+/// One participant's choices of what stood first.
+fn firsts(answers: &[Given]) -> Cluster {
+    let chosen = answers.iter().filter(|answer| answer.chose_first).count();
+    Cluster { successes: chosen as u64, trials: answers.len() as u64 }
 }
 
 impl Quartiles {

@@ -3,10 +3,10 @@
 use super::choices::{LEVEL, Proportion, REPLICATES};
 use crate::answers::Given;
 use crate::definition::{Block, Direction, GUESS, Psychometric};
-use kelir_stats::clustered::Bootstrap;
+use kelir_stats::clustered::{Bootstrap, Cluster};
 use kelir_stats::psychometric::{
-    Curve, GoodnessOfFit, Level, ParameterPosterior, Posterior, Scaling, Task, goodness_of_fit, posterior,
-    resampled_threshold,
+    Curve, GoodnessOfFit, Level, ParameterPosterior, Posterior, ResampledThreshold, Scaling, Task,
+    goodness_of_fit, posterior, resampled_threshold,
 };
 use serde::Serialize;
 use std::ops::Range;
@@ -37,7 +37,7 @@ pub struct PsychometricReport {
 pub struct LevelPoint {
     /// The level.
     pub level: f64,
-    /// Share of target choices with Wilson's interval; null without answers.
+    /// Share of target choices; null without answers.
     pub target: Option<Proportion>,
 }
 
@@ -53,7 +53,7 @@ pub struct PsychometricFit {
     /// Overdispersion η: η² is the correlation of two answers at one level; 0 is binomial.
     pub eta: Parameter,
     /// The threshold by maximum likelihood, with an interval from resampled participants; null with fewer than two.
-    pub threshold_by_participant: Option<Bootstrap>,
+    pub threshold_by_participant: Option<ResampledThreshold>,
     /// Levels at the shares asked for.
     pub at: Vec<ThresholdAt>,
     /// Deviance of the maximum-likelihood curve without overdispersion, and how large it would be by chance.
@@ -67,7 +67,7 @@ pub struct PsychometricFit {
 pub struct Parameter {
     /// Where the posterior density is highest.
     pub value: f64,
-    /// Lower end of the 95% posterior interval, as psignifit 4.3 reads it off its grid (half a cell from what finer grids converge to).
+    /// Lower end of the 95% posterior interval, each point's mass spread over its cell (psignifit 4.3 reads both ends half a cell lower).
     pub low: f64,
     /// Upper end.
     pub high: f64,
@@ -159,10 +159,19 @@ fn judge(
     };
     let mut points: Vec<LevelPoint> = levels
         .iter()
-        .map(|l| LevelPoint { level: sign * l.x, target: Proportion::of(l.correct, l.trials) })
+        .map(|l| LevelPoint { level: sign * l.x, target: Proportion::of(&at_level(people, l.x)) })
         .collect();
     points.sort_by(|a, b| a.level.total_cmp(&b.level));
     PsychometricReport { asked: asked.clone(), guess: GUESS, points, fit, notes }
+}
+
+/// Each participant's answers at a level.
+fn at_level(people: &[Vec<Level>], x: f64) -> Vec<Cluster> {
+    let of = |own: &Vec<Level>| {
+        let there = || own.iter().filter(|l| l.x == x);
+        Cluster { successes: there().map(|l| l.correct).sum(), trials: there().map(|l| l.trials).sum() }
+    };
+    people.iter().map(of).collect()
 }
 
 fn fit(
@@ -193,15 +202,37 @@ fn fit(
                 .to_owned(),
         );
     }
+    let threshold_by_participant = match resampled_threshold(people, &plain, REPLICATES, LEVEL, seed) {
+        Ok(found) => {
+            notes.extend(bounded(&found));
+            Some(found)
+        }
+        Err(error) => {
+            notes.push(format!("No interval of the threshold from resampled participants: {error}."));
+            None
+        }
+    };
     if people.iter().any(|own| own.len() > 1) {
-        notes.push(
-            "The posterior takes the answers at different levels as independent, although each participant gave several: the \
-             threshold's interval from resampled participants does not."
-                .to_owned(),
-        );
+        let instead = match &threshold_by_participant {
+            Some(_) => ": the threshold's interval from resampled participants does not",
+            None => "",
+        };
+        notes.push(format!(
+            "The posterior takes the answers at different levels as independent, although each participant gave several{instead}."
+        ));
     }
-    let threshold_by_participant = resampled_threshold(people, &plain, REPLICATES, LEVEL, seed).ok();
     Ok(PsychometricFit::of(asked, levels, &found, goodness, threshold_by_participant))
+}
+
+/// What resamples that did not show the curve make of the threshold's interval.
+fn bounded(found: &ResampledThreshold) -> Option<String> {
+    let (all, edge) = (found.bootstrap.replicates, found.at_bound);
+    (edge > 0).then(|| {
+        format!(
+            "In {edge} of {all} resamples of participants the curve ended on the edge of the range that is searched: their answers did not bound it, and \
+             the threshold's interval from resampled participants is at least as wide as it says."
+        )
+    })
 }
 
 impl Goodness {
@@ -223,18 +254,18 @@ impl PsychometricFit {
         levels: &[Level],
         found: &Posterior,
         goodness: Option<Goodness>,
-        by_participant: Option<Bootstrap>,
+        by_participant: Option<ResampledThreshold>,
     ) -> PsychometricFit {
         let falling = asked.direction == Direction::Falling;
         let map = &found.map;
         let upright = |value: f64, p: &ParameterPosterior| Parameter {
             value,
-            low: p.low,
-            high: p.high,
+            low: p.low_centred,
+            high: p.high_centred,
             on_edge: p.on_edge,
         };
         let mut threshold = upright(map.threshold, &found.threshold);
-        let mut bootstrap = by_participant;
+        let mut by_participant = by_participant;
         if falling {
             threshold = Parameter {
                 value: -threshold.value,
@@ -242,8 +273,11 @@ impl PsychometricFit {
                 high: -threshold.low,
                 ..threshold
             };
-            bootstrap =
-                bootstrap.map(|b| Bootstrap { estimate: -b.estimate, low: -b.high, high: -b.low, ..b });
+            by_participant = by_participant.map(|found| {
+                let b = found.bootstrap;
+                let bootstrap = Bootstrap { estimate: -b.estimate, low: -b.high, high: -b.low, ..b };
+                ResampledThreshold { bootstrap, ..found }
+            });
         }
         let at = found
             .thresholds
@@ -263,7 +297,7 @@ impl PsychometricFit {
             width: upright(map.width, &found.width),
             lapse: upright(map.lapse, &found.lapse),
             eta: upright(map.eta, &found.eta),
-            threshold_by_participant: bootstrap,
+            threshold_by_participant: by_participant,
             at,
             goodness,
             curve: curve(map, levels, asked.direction.sign()),

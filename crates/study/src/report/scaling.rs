@@ -1,9 +1,9 @@
 //! All conditions on one axis, and how far the answers bear that out.
 
-use super::{LEVEL, REPLICATES};
+use super::LEVEL;
 use crate::analysis::TOO_FEW_CONDITIONS;
-use crate::answers::{Participant, observers};
-use crate::definition::StudyDefinition;
+use crate::answers::{Participant, compares, observers};
+use crate::definition::{Block, Kind, StudyDefinition};
 use kelir_stats::pairwise::{
     Observer, ObserverFit, ScaleIntervals, ScaleOptions, circular_triads, observer_intervals, odd_observers,
     pool,
@@ -11,8 +11,13 @@ use kelir_stats::pairwise::{
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::methods::count;
+
 /// Above this many observers none is looked at alone: each costs a fit of all the others.
 const MOST_SCREENED: usize = 2000;
+
+/// Random patterns of signs of a test whose patterns are too many to try them all.
+const FLIPS: usize = 9999;
 
 /// How far observers contradict the one axis and themselves.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -22,7 +27,7 @@ pub struct Consistency {
     /// Observers whose choices the scale of all the others was asked to predict; 0 with fewer than three or with more than
     /// 2,000.
     pub observers: u64,
-    /// Those whom it predicts far worse than the rest (beyond Tukey's fence): to look at, not to exclude.
+    /// Those whom it predicts far worse than the rest: to look at, not to exclude.
     pub odd: Vec<ObserverFit>,
 }
 
@@ -51,9 +56,32 @@ pub(super) fn scale(
         return Err(TOO_FEW_CONDITIONS.to_owned());
     }
     let options = ScaleOptions::default();
-    let found = observer_intervals(&names, &observers, options, REPLICATES, LEVEL, study.seed)
+    let found = observer_intervals(&names, &observers, options, FLIPS, LEVEL, study.seed)
         .map_err(|error| format!("No scale: {error}."))?;
     Ok((found, consistency(&names, &observers)))
+}
+
+/// What a scale's choices are of, in words: it is one of conditions, whatever was shown.
+pub(super) fn pooled(study: &StudyDefinition) -> String {
+    let compared: Vec<&Block> = study.blocks.iter().filter(|block| compares(block)).collect();
+    let of_kind = |kind| compared.iter().filter(|b| b.kind == kind).map(|b| b.items.len()).sum::<usize>();
+    let kinds: Vec<String> = [(of_kind(Kind::Still), "still"), (of_kind(Kind::Animation), "animation")]
+        .into_iter()
+        .filter(|(items, _)| *items > 0)
+        .map(|(items, what)| count(items, what))
+        .collect();
+    let mut levels: Vec<f64> = compared.iter().flat_map(|b| &b.items).filter_map(|item| item.level).collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    let levels = match levels.len() {
+        0 => String::new(),
+        n => format!(", at {}", count(n, "level")),
+    };
+    format!(
+        "The scale takes the choices of {} together: pairs of {}{levels}; how conditions differ from one of these to another does not show in it.",
+        count(compared.len(), "block"),
+        kinds.join(" and ")
+    )
 }
 
 fn consistency(names: &[String], observers: &[Observer]) -> Consistency {

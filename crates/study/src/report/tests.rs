@@ -63,7 +63,7 @@ fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
     let scale = report.scale.unwrap();
     assert_eq!(scale.scale.conditions, ["mc", "pa", "photo"]);
     assert!(scale.scale.jod.iter().all(|x| x.abs() < 1e-9), "nobody was preferred");
-    assert_eq!((report.methods.len(), report.references.len()), (7, 12), "{:?}", report.methods);
+    assert_eq!((report.methods.len(), report.references.len()), (7, 20), "{:?}", report.methods);
     // Each participant answered two of the three comparisons: no triad is whole.
     let consistency = report.consistency.unwrap();
     assert_eq!(consistency.triads, Triads { triads: 0, circular: 0, consistence: None });
@@ -86,6 +86,83 @@ fn an_empty_study_gives_a_report_that_says_so() {
 }
 
 #[test]
+fn holm_counts_every_planned_test_and_no_other() {
+    // Seven of eight choose the target of pair c; of the other block everybody chooses one, so that its t is not defined, and yet it counts.
+    let chosen = |i: usize, k: usize| match k {
+        0 => "pa",
+        1 => "mc",
+        2 if i == 0 => "photo",
+        _ => "pa",
+    };
+    let report = Report::of(&study(), &answers(8, chosen).participants());
+    let [stills, photos] = &report.blocks[..] else { panic!() };
+    assert!(stills.planned && photos.planned);
+    assert_eq!((stills.summary.p, stills.p_holm), (None, None));
+    // R 4.2.2: t.test(c(0, rep(1, 7)), mu = .5)$p.value = 0.0197..., p.adjust(c(p, 1), "holm")[1] = 2 p.
+    let p = photos.summary.p.unwrap();
+    assert_eq!(photos.p_holm, Some(2.0 * p));
+    assert!(report.methods.join(" ").contains("for the 2 planned tests"), "{:?}", report.methods);
+    // A block with a psychometric function plans no t-test, unless its file says so.
+    let levels = |t_test: &str| {
+        let items: Vec<String> =
+            (1..=3).map(|i| format!("{{ id = \"c{i}\", scene = \"a.toml\", level = {i} }}")).collect();
+        let block = format!(
+            "items = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n{t_test}",
+            items.join(", ")
+        );
+        let text = text().replace("items = [{ id = \"c\", scene = \"a.toml\" }]", &block);
+        StudyDefinition::parse("s.toml", &text).unwrap()
+    };
+    let planned = |study: &StudyDefinition| {
+        Report::of(study, &[]).blocks.iter().map(|block| block.planned).collect::<Vec<_>>()
+    };
+    assert_eq!(planned(&levels("")), [true, false]);
+    assert_eq!(planned(&levels("t_test = true")), [true, true]);
+    // What a file leaves out changes no hash; what it says does.
+    assert!(!levels("").to_json().contains("t_test"));
+    assert_eq!(levels("").design_hash(), levels("t_test = false").design_hash());
+    assert_ne!(levels("").design_hash(), levels("t_test = true").design_hash());
+}
+
+#[test]
+fn a_bound_of_equivalence_is_stated_with_its_reason() {
+    let with = |bound: &str| text().replacen("question =", &format!("{bound}\nquestion ="), 1);
+    let stated = with("equivalence = { within = 0.1, reason = \"A tenth is what we would act on.\" }");
+    let study = StudyDefinition::parse("s.toml", &stated).unwrap();
+    let report = Report::of(&study, &answers(16, by_bits).participants());
+    let found = report.blocks[0].analysis.equivalence.unwrap();
+    // Two items: a tenth of the share is a fifth of a choice.
+    assert!((found.within - 0.1).abs() < 1e-15 && (found.tests.half_width - 0.2).abs() < 1e-15, "{found:?}");
+    let methods = report.methods.join(" ");
+    assert!(
+        methods.contains("±0.1 on the share") && methods.contains("A tenth is what we would act on."),
+        "{methods}"
+    );
+    let silent = Report::of(&self::study(), &answers(16, by_bits).participants());
+    assert!(silent.blocks.iter().all(|b| b.analysis.equivalence.is_none()), "no bound is assumed");
+    assert!(!self::study().to_json().contains("equivalence"), "what is left out changes no hash");
+    for (bound, named) in [
+        ("equivalence = { within = 0.5, reason = \"x\" }", "equivalence.within = 0.5"),
+        ("equivalence = { within = 0, reason = \"x\" }", "equivalence.within = 0"),
+        ("equivalence = { within = 0.1 }", "equivalence.reason: is missing"),
+        ("equivalence = { reason = \"x\" }", "equivalence.within: is missing"),
+        ("equivalence = { within = 0.1, reason = \"x\", sd = 1 }", "equivalence.sd"),
+    ] {
+        let problems = StudyDefinition::parse("s.toml", &with(bound)).unwrap_err().to_string();
+        assert!(problems.contains(named), "{bound}: {problems}");
+    }
+}
+
+#[test]
+fn a_scale_says_what_its_choices_are_of() {
+    let report = Report::of(&study(), &answers(16, by_bits).participants());
+    assert!(report.scale_pools.contains("2 blocks together: pairs of 3 stills;"), "{}", report.scale_pools);
+    let films = text().replacen("kind = \"still\"", "kind = \"animation\"", 1);
+    let pools = Report::of(&StudyDefinition::parse("s.toml", &films).unwrap(), &[]).scale_pools;
+    assert!(pools.contains("1 still and 2 animations"), "{pools}");
+}
+
+#[test]
 fn degenerate_answers_are_notes_and_no_panic() {
     for (people, choice) in [(1, "pa"), (2, "pa"), (16, "pa"), (16, "mc")] {
         let same = answers(people, |_, k| if k == 2 { "photo" } else { choice });
@@ -99,15 +176,13 @@ fn degenerate_answers_are_notes_and_no_panic() {
 
 #[test]
 fn the_papers_counts_are_judged_as_the_issue_says() {
-    use kelir_stats::inference::Bounds;
-    let analysis = |counts: [u64; 3]| ChoiceAnalysis::of_counts(&(0..).zip(counts).collect(), 2, 1);
+    let analysis = |counts: [u64; 3]| ChoiceAnalysis::of_counts(&(0..).zip(counts).collect(), 2, Some(0.25));
     let first = analysis([12, 14, 6]);
-    let p_of = |bounds: Bounds| first.equivalence.iter().find(|e| e.bounds == bounds).unwrap().p;
     let effect = first.effect.unwrap();
     let icc = |a: &ChoiceAnalysis| a.intraclass.as_ref().unwrap().icc;
     for (ours, printed, half_a_digit) in [
-        (p_of(Bounds::Points(0.5)), 0.0114, 5e-5),
-        (p_of(Bounds::Sd(0.5)), 0.087, 5e-4),
+        // Half a choice of two is a quarter of the share.
+        (first.equivalence.unwrap().tests.p, 0.0114, 5e-5),
         (first.bayes.unwrap().bf01, 2.1, 0.05),
         (effect.g, -0.248, 5e-4),
         (effect.g_interval.low, -0.590, 5e-4),
@@ -123,9 +198,15 @@ fn the_papers_counts_are_judged_as_the_issue_says() {
     ] {
         assert!((ours - printed).abs() < half_a_digit, "{ours} is not {printed}");
     }
-    assert!(first.notes.iter().any(|n| n.contains("not shown to be absent")), "{:?}", first.notes);
+    // Not significant, and equivalent within the bound: nothing is left open. Within a narrower one, or without any, something is.
+    let open = |a: &ChoiceAnalysis| a.notes.iter().any(|n| n.contains("not shown to be absent"));
+    assert!(!open(&first), "{:?}", first.notes);
+    for within in [Some(0.1), None] {
+        let other = ChoiceAnalysis::of_counts(&(0..).zip([12, 14, 6]).collect(), 2, within);
+        assert!(open(&other) && other.equivalence.is_some() == within.is_some(), "{:?}", other.notes);
+    }
     // Negative control: the second block's difference is significant, and nothing of the kind is said.
-    assert!(!analysis([3, 10, 19]).notes.iter().any(|n| n.contains("not shown to be absent")));
+    assert!(!open(&analysis([3, 10, 19])));
 }
 
 #[test]
@@ -138,7 +219,8 @@ fn methods_say_how_each_kind_of_trial_shows_its_pictures() {
     let (at_once, layouts) = said(&text());
     assert!(at_once.contains("The two were shown beside each other, or below"), "{at_once}");
     assert!(!at_once.contains("fixation"), "{at_once}");
-    assert_eq!(layouts, ["side by side", "side by side"]);
+    let at_once_layout = "side by side, or one above the other in a narrow window";
+    assert_eq!(layouts, [at_once_layout; 2]);
     // One of three blocks asks otherwise: each sentence says of which it speaks.
     let intervals =
         "id = \"photos\"\ntrial = \"two-interval\"\ntrial_settings = { first_ms = 250, mask_ms = 0 }";
@@ -150,7 +232,7 @@ fn methods_say_how_each_kind_of_trial_shows_its_pictures() {
         both.contains("In the blocks \"Stills\", \"Catch\" the two were shown beside each other"),
         "{both}"
     );
-    assert_eq!(layouts, ["side by side", "one after the other"]);
+    assert_eq!(layouts, [at_once_layout, "one after the other"]);
 }
 
 #[test]

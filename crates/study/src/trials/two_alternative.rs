@@ -35,6 +35,6 @@ pub(super) const PRESENTATION: &str =
 pub(super) static RULES: ChoiceOfTwo = ChoiceOfTwo {
     name: TrialName::TwoAlternative,
     roles: &[Role::Left, Role::Right],
-    layout: "side by side",
+    layout: "side by side, or one above the other in a narrow window",
     record: LazyLock::new(Record::of::<TwoAlternativeAnswer>),
 };

@@ -23,6 +23,8 @@ pub struct Repeated {
 pub enum LeftOut {
     /// The study's rules of screening say so.
     Excluded(Vec<Exclusion>),
+    /// It goes on, and the rules judge nobody who has not finished.
+    InProgress,
     /// Another session of the same person counts.
     Repeated(Repeated),
     /// It is no participant's.
@@ -36,6 +38,7 @@ impl fmt::Display for LeftOut {
                 let reasons: Vec<String> = reasons.iter().map(Exclusion::to_string).collect();
                 f.write_str(&reasons.join("; "))
             }
+            LeftOut::InProgress => f.write_str("still in progress"),
             LeftOut::Repeated(repeated) => {
                 write!(f, "had taken part before: session {} counts", repeated.counted)
             }
@@ -93,11 +96,21 @@ impl<'a> Judged<'a> {
                 })),
                 (Some(participant), None) => {
                     all.everybody.push(participant);
-                    let reasons = screen(study, participant, &flags);
+                    let mut reasons = screen(study, participant, &flags);
                     if reasons.is_empty() {
                         all.judged.push(participant);
+                        None
+                    } else {
+                        // Whoever goes on has not failed to finish.
+                        reasons.retain(|reason| {
+                            !(visit.is_active && matches!(reason, Exclusion::Incomplete { .. }))
+                        });
+                        Some(if reasons.is_empty() {
+                            LeftOut::InProgress
+                        } else {
+                            LeftOut::Excluded(reasons)
+                        })
                     }
-                    (!reasons.is_empty()).then_some(LeftOut::Excluded(reasons))
                 }
             };
             all.left_out.extend(why.map(|why| (visit, why)));

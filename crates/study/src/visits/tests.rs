@@ -161,6 +161,26 @@ fn trial_runs_and_simulations_are_left_out_unless_asked_for_and_count_against_no
 }
 
 #[test]
+fn whoever_goes_on_is_in_progress_and_not_excluded_for_not_having_finished() {
+    let study = study("[screening]\nincomplete = true\nmin_rt_ms = 200");
+    let active = |session| Visit { is_active: true, ..visit(session, None, None) };
+    let visits = [active("1"), visit("2", None, None), active("3")];
+    let mut answers = Answers::new(&study);
+    for (session, rt_ms) in [("1", 900.0), ("2", 900.0), ("3", 100.0)] {
+        answers.push(Row::choice(session, 0, "x", ["pa", "mc"], true, rt_ms));
+    }
+    let judged = Judged::of(&study, &answers, &visits, &[]);
+    let incomplete = Exclusion::Incomplete { answered: 1, trials: 2 };
+    let fast = Exclusion::TooFast { trials: 1, allowed: 0 };
+    let why: Vec<&LeftOut> = judged.left_out.iter().map(|(_, why)| why).collect();
+    assert_eq!(
+        why,
+        [&LeftOut::InProgress, &LeftOut::Excluded(vec![incomplete]), &LeftOut::Excluded(vec![fast])]
+    );
+    assert!(judged.judged.is_empty(), "the rule judges nobody who has not finished");
+}
+
+#[test]
 fn what_was_noticed_leaves_out_by_the_studys_rules_alone() {
     let flagged =
         Visit { flags: vec![Flag::ManyStarts], consented_us: Some(8 * SECOND), ..visit("1", None, Some(9)) };

@@ -31,7 +31,7 @@ fn design(study: &StudyDefinition) -> String {
         format!(" Of these, {} served to catch inattention and entered no analysis.", count(catch, "pair"))
     };
     format!(
-        "Participants saw {} of pictures of {} ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
+        "Participants saw {} of pictures made at {} ({}) in {} on a uniform grey of linear luminance {}, and were asked: \
          \"{}\" They had to choose one of the two pictures of each trial. {}{catch} Blocks came in a fixed order and items within a block in a \
          random one. Which of the two came first (on the left, above or earlier) was balanced within participants and, over participants, item by item (mirrored plans from the seed {}, given to \
          the lowest place in the design that no completed or active session held).",
@@ -46,14 +46,22 @@ fn design(study: &StudyDefinition) -> String {
     )
 }
 
-/// In which sizes they were.
+/// In which sizes they were made, and what became of these in a window.
 fn sizes(study: &StudyDefinition) -> String {
     let which = match (study.sizes(), study.fit()) {
-        ([_], _) => "",
-        (_, Fit::Fill) => ", whichever a window needed",
-        _ => ", whichever was the largest to fit a participant's window",
+        (_, Fit::Fill) => "resampled to fill a participant's window",
+        ([_], Fit::Integer) => {
+            "enlarged by whole multiples where a participant's window had room and scaled down where it had too little"
+        }
+        ([_], Fit::Native) => "scaled down where a participant's window had too little room",
+        (_, Fit::Integer) => {
+            "the largest that fitted a participant's window shown, or a whole multiple of it, and the smallest scaled down where none did"
+        }
+        (_, Fit::Native) => {
+            "the largest that fitted a participant's window shown, and the smallest scaled down where none did"
+        }
     };
-    format!("{}{which}", study.sizes_in_words())
+    format!("{}, {which}", study.sizes_in_words())
 }
 
 /// How many pairs of pictures participants saw.
