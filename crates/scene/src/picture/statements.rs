@@ -63,7 +63,7 @@ pub(super) fn colours_of_png(bytes: &[u8]) -> Result<Transfer, String> {
     match find(b"gAMA").map(numbers).as_deref() {
         // 1/2.2 is what writers say who mean sRGB.
         None | Some([45445..=45465]) => Ok(Transfer::Srgb),
-        Some([gamma @ 1..]) => Ok(Transfer::Power(100_000.0 / f64::from(*gamma))),
+        Some([gamma]) if *gamma > 0 => Ok(Transfer::Power(100_000.0 / f64::from(*gamma))),
         Some(other) => {
             Err(format!("says by gAMA = {other:?} nothing that can be applied; convert it to sRGB"))
         }

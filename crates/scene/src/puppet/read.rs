@@ -186,7 +186,9 @@ fn open_image(node: &Node, from: &str, parts: &[String], loader: &Loader) -> Opt
         let mut refuse = |rule: String| {
             node.refuse::<()>(rule);
         };
-        return Svg::open(&bytes, parts, &mut refuse).map(Drawing::Svg);
+        let svg = Svg::open(&bytes, parts, &mut refuse)?;
+        svg.odd.iter().for_each(|odd| node.warn(odd));
+        return Some(Drawing::Svg(svg));
     }
     if path.ends_with(".png") {
         let (_, bytes) = loader.read(from, node, limits::IMAGE_BYTES)?;
