@@ -140,17 +140,17 @@ impl Study {
         let quoted = |text: &str| serde_json::to_string(&plain(text)).unwrap();
         let photo =
             if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
-        let mut keys = vec![
-            ("title", &*quoted(&self.title)),
-            ("question", &quoted(&self.question)),
-            ("seed", "11"),
-            (
-                "conditions",
-                &format!("{{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}"),
-            ),
-            ("screening", &format!("{{ {} }}", self.screening)),
-        ];
+        let (title, question) = (quoted(&self.title), quoted(&self.question));
+        let conditions = format!("{{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}");
+        let screening = format!("{{ {} }}", self.screening);
         let within = format!("{{ within = {}, reason = \"Less would change nothing.\" }}", self.within);
+        let mut keys = vec![
+            ("title", &*title),
+            ("question", &question),
+            ("seed", "11"),
+            ("conditions", &conditions),
+            ("screening", &screening),
+        ];
         if !self.within.is_empty() {
             keys.push(("equivalence", &within));
         }

@@ -162,7 +162,7 @@ fn trial_runs_and_simulations_are_left_out_unless_asked_for_and_count_against_no
 
 #[test]
 fn whoever_goes_on_is_in_progress_and_not_excluded_for_not_having_finished() {
-    let study = study("[screening]\nincomplete = true\nmin_rt_ms = 200");
+    let study = study(&[("screening", "{ incomplete = true, min_rt_ms = 200 }")]);
     let active = |session| Visit { is_active: true, ..visit(session, None, None) };
     let visits = [active("1"), visit("2", None, None), active("3")];
     let mut answers = Answers::new(&study);
