@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use kelir_fixtures as fixtures;
 use kelir_fixtures::block;
 use kelir_tests::{Server, Taking, browser, kelir_ok, root, small_data, sql};
 use serde_json::{Value, json};
@@ -28,12 +29,15 @@ fn data(procedure: &str) -> tempfile::TempDir {
         ));
     }
     let pair =
-        |id: &str| block(id, &format!("items = [{{ id = \"{id}-1\", scene = \"../scenes/far.toml\" }}]"));
-    let levels = format!(
-        "items = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"distance\"\nunit = \"dm\"\n\
-         [blocks.adaptive]\n{procedure}",
-        items.join(", ")
-    );
+        |id: &str| block(id, &[("items", &fixtures::items([format!("{id}-1")], "../scenes/far.toml"))]);
+    let levels = [
+        ("items", &*format!("[{}]", items.join(", "))),
+        (
+            "psychometric",
+            r#"{ function = "logistic", direction = "rising", label = "distance", unit = "dm" }"#,
+        ),
+        ("adaptive", procedure),
+    ];
     let text = study("[64, 36]", &[pair("before"), block("steps", &levels), pair("after")]);
     std::fs::write(data.path().join("studies/adaptive.toml"), text).unwrap();
     data
@@ -114,7 +118,7 @@ fn check_report(data: &Path, expected: &[(i64, u64, u64)]) {
 
 #[test]
 fn a_staircase_in_a_browser_goes_as_levitt_wrote_over_a_reload_and_a_line_that_drops() {
-    let data = data("procedure = \"staircase\"\ndown = 2\nsteps = [2, 1]\nreversals = 5\ntrials = 24");
+    let data = data(r#"{ procedure = "staircase", down = 2, steps = [2, 1], reversals = 5, trials = 24 }"#);
     let server = Server::start_with(data.path(), "adaptive");
     let cookie = server.sign_in();
     let results = server.research(&cookie, "/api/v1/studies/adaptive/versions/current/results");
@@ -183,7 +187,7 @@ fn a_staircase_in_a_browser_goes_as_levitt_wrote_over_a_reload_and_a_line_that_d
 #[test]
 fn quest_plus_over_http_ends_after_its_trials() {
     const TRIALS: usize = 12;
-    let data = data(&format!("procedure = \"quest-plus\"\ntrials = {TRIALS}"));
+    let data = data(&format!("{{ procedure = \"quest-plus\", trials = {TRIALS} }}"));
     let server = Server::start_with(data.path(), "adaptive");
     let mut taking = Taking::begin(&server, "adaptive", "budi");
     assert_eq!((&taking.state["more"], &taking.state["most_trials"]), (&json!(true), &json!(TRIALS + 2)));

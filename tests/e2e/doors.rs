@@ -9,12 +9,12 @@ use serde_json::Value;
 
 /// A still and an animation of one scene; it hides the built-in study by having its name.
 fn study() -> String {
-    let block = |id: &str, keys: &str| {
-        fixtures::block(id, &format!("{keys}\n{}", fixtures::items([id], "../scenes/lamp.toml")))
+    let block = |id: &str, kind: &str| {
+        fixtures::block(id, &[("kind", kind), ("items", &fixtures::items([id], "../scenes/lamp.toml"))])
     };
-    let conditions = "[conditions.pa]\ntechnique = \"pa\"\n[conditions.mc]\ntechnique = \"mc\"\nspp = 16";
-    let blocks = [block("still", ""), block("moving", "kind = \"animation\"")];
-    fixtures::study(&format!("size = [96, 54]\n{conditions}"), blocks)
+    let conditions = r#"{ pa = { technique = "pa" }, mc = { technique = "mc", spp = 16 } }"#;
+    let blocks = [block("still", "\"still\""), block("moving", "\"animation\"")];
+    fixtures::study(&[("size", "[96, 54]"), ("conditions", conditions)], blocks)
 }
 
 /// The lamp comes nearer and stays: frames that show nothing new are among them.

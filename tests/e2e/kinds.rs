@@ -10,11 +10,13 @@ use serde_json::{Value, json};
 
 /// A study file with these blocks, its reference of few samples.
 pub(crate) fn study(size: &str, blocks: &[String]) -> String {
-    let conditions = "[conditions.pa]\ntechnique = \"pa\"\n[conditions.mc]\ntechnique = \"mc\"\nspp = 4";
-    let head = format!(
-        "question = \"Which image is more likely to be real?\"\nseed = 5\nsize = {size}\n{conditions}"
-    );
-    fixtures::study(&head, blocks)
+    let keys = [
+        ("question", "\"Which image is more likely to be real?\""),
+        ("seed", "5"),
+        ("size", size),
+        ("conditions", r#"{ pa = { technique = "pa" }, mc = { technique = "mc", spp = 4 } }"#),
+    ];
+    fixtures::study(&keys, blocks)
 }
 
 /// Items with the scenes of `small`, by turns.
@@ -23,7 +25,14 @@ fn items(ids: &[&str]) -> String {
     let items = ids.iter().zip(scenes);
     let items: Vec<String> =
         items.map(|(id, scene)| format!("{{ id = \"{id}\", scene = \"../scenes/{scene}.toml\" }}")).collect();
-    format!("items = [{}]", items.join(", "))
+    format!("[{}]", items.join(", "))
+}
+
+/// A block in two intervals, which take so many ms: fixation, first, mask and second.
+fn intervals(id: &str, ids: &[&str], [fixation, first, mask, second]: [f64; 4]) -> String {
+    let settings =
+        format!("{{ fixation_ms = {fixation}, first_ms = {first}, mask_ms = {mask}, second_ms = {second} }}");
+    block(id, &[("trial", "\"two-interval\""), ("trial_settings", &settings), ("items", &items(ids))])
 }
 
 /// An answer as it is stored, with whose it is.
@@ -124,16 +133,10 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
     // Long enough for a screenshot of each on a busy machine.
     const SLOW: [f64; 4] = [2500.0; 4];
     let data = small_data();
-    let intervals = |ids: &[&str], [fixation, first, mask, second]: [f64; 4]| {
-        format!(
-            "trial = \"two-interval\"\n{}\n[blocks.trial_settings]\nfixation_ms = {fixation}\nfirst_ms = {first}\nmask_ms = {mask}\nsecond_ms = {second}",
-            items(ids)
-        )
-    };
     let blocks = [
-        block("brief", &intervals(&["a", "b"], BRIEF)),
-        block("slow", &intervals(&["c"], SLOW)),
-        block("sides", &items(&["d", "e"])),
+        intervals("brief", &["a", "b"], BRIEF),
+        intervals("slow", &["c"], SLOW),
+        block("sides", &[("items", &items(&["d", "e"]))]),
     ];
     std::fs::write(data.path().join("studies/kinds.toml"), study("[320, 180]", &blocks)).unwrap();
     let server = Server::start_with(data.path(), "kinds");
@@ -245,16 +248,8 @@ fn two_intervals_are_stored_exported_and_counted_as_they_were_shown() {
 #[test]
 fn what_the_export_says_of_a_stimulus_is_how_wide_it_stood_on_any_display() {
     let data = small_data();
-    let blocks = [
-        block("sides", &items(&["d"])),
-        block(
-            "brief",
-            &format!(
-                "trial = \"two-interval\"\n{}\n[blocks.trial_settings]\nfixation_ms = 0\nfirst_ms = 100\nmask_ms = 0\nsecond_ms = 100",
-                items(&["a"])
-            ),
-        ),
-    ];
+    let blocks =
+        [block("sides", &[("items", &items(&["d"]))]), intervals("brief", &["a"], [0.0, 100.0, 0.0, 100.0])];
     std::fs::write(data.path().join("studies/sizes.toml"), study("[336, 189]", &blocks)).unwrap();
     let server = Server::start_with(data.path(), "sizes");
     // (ratio, window, pressed with); the smallest window has no room for the pictures' own size. Chromium lays out in 64ths of a pixel, which these

@@ -118,7 +118,10 @@ pub struct Attributes {
     pub scene_sha256: String,
 }
 
-/// An OpenEXR file of [`Frame::channels`] in f32; rows top to bottom, ZIP
+/// Bytes that a name in an EXR file has without a flag that says longer ones are there.
+const SHORT_NAME: usize = 31;
+
+/// An OpenEXR file of [`Frame::channels`] in f32: scan lines from the top, sixteen a block, ZIP
 /// compressed. Attributes: `white` (f32), `exposure`, `technique`, `sceneSha256` and `kelirVersion`.
 pub fn exr(frame: &Frame, attributes: &Attributes) -> Result<Vec<u8>, RenderError> {
     use exr::prelude::*;
@@ -132,14 +135,23 @@ pub fn exr(frame: &Frame, attributes: &Attributes) -> Result<Vec<u8>, RenderErro
     own.other.insert(Text::from("technique"), text(&attributes.technique));
     own.other.insert(Text::from("sceneSha256"), text(&attributes.scene_sha256));
     own.other.insert(Text::from("kelirVersion"), text(env!("CARGO_PKG_VERSION")));
-    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::default() };
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
     let layer = Layer::new((frame.size[0], frame.size[1]), own, encoding, AnyChannels::sort(channels));
     let mut bytes = std::io::Cursor::new(Vec::new());
     Image::from_layer(layer)
         .write()
         .to_buffered(&mut bytes)
         .map_err(|e| RenderError::Encode(format!("exr: {e}")))?;
-    Ok(bytes.into_inner())
+    let mut bytes = bytes.into_inner();
+    if frame.channels().any(|(name, _)| name.len() > SHORT_NAME) {
+        // The library leaves it to attributes to ask for this flag, but the format wants it of channels too.
+        bytes[5] |= 0x04;
+    }
+    Ok(bytes)
 }
 
 #[cfg(test)]
@@ -244,5 +256,24 @@ mod tests {
         assert_eq!(find("SE.G"), frame().standard_error.unwrap()[1]);
         let white = image.layer_data.attributes.other.get(&Text::from("white")).unwrap();
         assert_eq!(*white, AttributeValue::F32(0.25));
+        assert_eq!(image.layer_data.encoding.blocks, Blocks::ScanLines);
+        assert_eq!(image.layer_data.encoding.line_order, LineOrder::Increasing);
+    }
+
+    /// The version field's third flag, and nothing else, says that there are names of more than 31 bytes.
+    #[test]
+    fn exr_says_that_names_are_long() {
+        let of = |length: usize| {
+            let mut frame = frame();
+            frame.visibilities[0].emitter = "e".repeat(length - "Vgeo.".len());
+            let attributes = Attributes {
+                white: 1.0,
+                exposure: Rule::Still,
+                technique: String::new(),
+                scene_sha256: String::new(),
+            };
+            u32::from_le_bytes(exr(&frame, &attributes).unwrap()[4..8].try_into().unwrap())
+        };
+        assert_eq!([of(31), of(32), of(69)], [0x002, 0x402, 0x402]);
     }
 }

@@ -17,6 +17,18 @@ pub enum RenderError {
     /// A knob is out of its range; the message names the knob, the value and the rule.
     #[error("{0}")]
     Knob(String),
+    /// A drawn value that is no finite number. It is never shown, stored or measured.
+    #[error("{drawn}{channel} is {value} at pixel ({}, {}), counted from the top left", at[0], at[1])]
+    NotFinite {
+        /// What was drawn by what, as [`RenderError::of`] says it.
+        drawn: String,
+        /// The channel, as EXR files name it.
+        channel: String,
+        /// The value.
+        value: f32,
+        /// Column and row.
+        at: [usize; 2],
+    },
     /// No adapter, or it failed.
     #[error("GPU: {0}")]
     Gpu(String),
@@ -31,6 +43,18 @@ pub enum RenderError {
         /// What the system said.
         source: std::io::Error,
     },
+}
+
+impl RenderError {
+    /// The same error; of a value that is not finite it says in which scene and by which technique.
+    pub fn of(self, scene: &str, technique: &str) -> Self {
+        match self {
+            Self::NotFinite { channel, value, at, .. } => {
+                Self::NotFinite { drawn: format!("{scene} drawn by {technique}: "), channel, value, at }
+            }
+            other => other,
+        }
+    }
 }
 
 impl From<kelir_jcs::Error> for RenderError {

@@ -1,31 +1,76 @@
 //! Files that are whole or absent.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use crate::RenderError;
 
 /// A part that nobody has written to for so long was left by a process that was killed.
 const ABANDONED: Duration = Duration::from_secs(60);
+/// A folder waits longer for its next file: a frame may take minutes.
+const ABANDONED_FOLDER: Duration = Duration::from_secs(3600);
 
 /// Writes `bytes` beside `path` and renames: whoever is interrupted leaves no half-written file, at most `NAME.PROCESS.NUMBER.part`, which
 /// a later write of the same file removes. Missing folders are made.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
-    use std::sync::atomic::{AtomicU64, Ordering};
-    static SERIAL: AtomicU64 = AtomicU64::new(0);
-    let named = |source| RenderError::Io { path: path.display().to_string(), source };
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(named)?;
+    let part = part_of(path)?;
+    let written = std::fs::write(&part.path, bytes).and_then(|()| std::fs::rename(&part.path, path));
+    written.map_err(|source| named(path, source))
+}
+
+/// Tries whether a file can be written, and leaves nothing of it: what can't be is told before anything is drawn.
+///
+/// Errors: what the system says, and a folder in the file's place.
+pub fn try_writing(path: &Path) -> Result<(), RenderError> {
+    let part = part_of(path)?;
+    std::fs::File::create(&part.path).map(drop).map_err(|source| named(path, source))
+}
+
+fn part_of(path: &Path) -> Result<Part, RenderError> {
+    if path.is_dir() {
+        return Err(named(path, std::io::ErrorKind::IsADirectory.into()));
     }
-    remove_abandoned(path);
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.{}.part", std::process::id(), SERIAL.fetch_add(1, Ordering::Relaxed)));
-    let part = path.with_file_name(name);
-    let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
-    written.map_err(|source| {
-        let _ = std::fs::remove_file(&part);
-        named(source)
-    })
+    Part::beside(path)
+}
+
+/// The error of a path.
+pub(super) fn named(path: &Path, source: std::io::Error) -> RenderError {
+    RenderError::Io { path: path.display().to_string(), source }
+}
+
+/// A name beside a path under which it is made, and the folders that had to be made for it. What of these is left empty goes when it is dropped.
+#[derive(Debug)]
+pub(super) struct Part {
+    pub path: PathBuf,
+    made: Vec<PathBuf>,
+}
+
+impl Part {
+    pub(super) fn beside(path: &Path) -> Result<Self, RenderError> {
+        static SERIAL: AtomicU64 = AtomicU64::new(0);
+        let folders = path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty());
+        let made: Vec<PathBuf> = folders.take_while(|folder| !folder.exists()).map(Path::to_owned).collect();
+        if let Some(folder) = made.first() {
+            std::fs::create_dir_all(folder).map_err(|source| named(path, source))?;
+        }
+        remove_abandoned(path);
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(format!(".{}.{}.part", std::process::id(), SERIAL.fetch_add(1, Ordering::Relaxed)));
+        Ok(Self { path: path.with_file_name(name), made })
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        let _ = if self.path.is_dir() {
+            std::fs::remove_dir_all(&self.path)
+        } else {
+            std::fs::remove_file(&self.path)
+        };
+        // Only empty folders can be removed so.
+        self.made.iter().for_each(|folder| drop(std::fs::remove_dir(folder)));
+    }
 }
 
 /// Removes what killed processes left of `path`. What can't be looked at or removed is left alone.
@@ -44,10 +89,13 @@ fn remove_abandoned(path: &Path) {
         if !entry.file_name().to_str().is_some_and(is_part) {
             continue;
         }
-        let written = entry.metadata().and_then(|m| m.modified());
-        if written.is_ok_and(|at| at.elapsed().is_ok_and(|age| age > ABANDONED)) {
-            let _ = std::fs::remove_file(entry.path());
-        }
+        let Ok(about) = entry.metadata() else { continue };
+        let age = about.modified().ok().and_then(|at| at.elapsed().ok()).unwrap_or_default();
+        let _ = match about.is_dir() {
+            true if age > ABANDONED_FOLDER => std::fs::remove_dir_all(entry.path()),
+            false if age > ABANDONED => std::fs::remove_file(entry.path()),
+            _ => Ok(()),
+        };
     }
 }
 
@@ -94,5 +142,18 @@ mod tests {
         expected.extend(kept);
         expected.sort_unstable();
         assert_eq!(left, expected);
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_told_before_it_is_made() {
+        let folder = tempfile::tempdir().unwrap();
+        let taken = folder.path().join("taken");
+        std::fs::write(&taken, b"").unwrap();
+        for path in [taken.join("a.png"), folder.path().to_owned()] {
+            assert!(try_writing(&path).is_err(), "{}", path.display());
+        }
+        // A try leaves neither its part nor the folders that were made for it.
+        try_writing(&folder.path().join("new/newer/a.png")).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

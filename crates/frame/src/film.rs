@@ -1,5 +1,7 @@
 //! Animations as one file, for sharing: APNG (lossless) and MP4 (H.264, small). Studies show separate frames; see the manifest of `kelir animate`.
 
+#[cfg(feature = "mp4")]
+mod boxes;
 #[cfg_attr(not(feature = "mp4"), path = "film/no_mp4.rs")]
 mod mp4;
 
@@ -14,6 +16,9 @@ pub enum Format {
     /// H.264, 4:2:0; small, plays everywhere.
     Mp4,
 }
+
+/// The longer and the shorter side of the largest MP4: H.264's level 5.2, which the encoder ends at.
+const MP4_MOST: [usize; 2] = [3840, 2160];
 
 /// How a film runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +62,15 @@ impl Film {
                 return refused(format!(
                     "size = {}x{}: an MP4 is at least 16x16 pixels",
                     run.size[0], run.size[1]
+                ));
+            }
+            Format::Mp4
+                if run.size.iter().max() > Some(&MP4_MOST[0])
+                    || run.size.iter().min() > Some(&MP4_MOST[1]) =>
+            {
+                return refused(format!(
+                    "size = {}x{}: an MP4 is at most {}x{} pixels, upright or not; an APNG or a folder of frames may be larger",
+                    run.size[0], run.size[1], MP4_MOST[0], MP4_MOST[1]
                 ));
             }
             Format::Mp4 => Kind::Mp4(Box::new(Mp4::new(run)?)),

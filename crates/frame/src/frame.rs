@@ -100,6 +100,21 @@ impl Frame {
         let errors = RGB.iter().zip(self.standard_error.iter().flatten());
         radiance.chain(visibilities).chain(errors.map(|(c, values)| (format!("SE.{c}"), &values[..])))
     }
+
+    /// Errors: the first value that is no finite number.
+    pub fn check(&self) -> Result<(), RenderError> {
+        for (channel, values) in self.channels() {
+            // A count, as a search that may end early is no vector code.
+            if values.iter().map(|v| u32::from(!v.is_finite())).sum::<u32>() == 0 {
+                continue;
+            }
+            if let Some(k) = values.iter().position(|v| !v.is_finite()) {
+                let at = [k % self.size[0], k / self.size[0]];
+                return Err(RenderError::NotFinite { drawn: String::new(), channel, value: values[k], at });
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Visibility {
@@ -159,12 +174,14 @@ impl Meter {
 
 /// Draws one kind of subject with one technique on one backend; keeps what it built between calls and reuses what did not change.
 pub trait Renderer<S>: Send {
-    /// The audience's linear radiance, and the emitters' visibilities where they are wanted: what gives no light is skipped otherwise.
+    /// The audience's linear radiance, and the emitters' visibilities where they are wanted: what gives no light is skipped otherwise. What
+    /// leaves a renderer is asked for by [`radiance`](Self::radiance) and [`display`](Self::display), which check it.
     fn frame(&mut self, subject: &S, view: &View, visibilities: bool) -> Result<Frame, RenderError>;
 
-    /// The audience's linear radiance with all visibilities.
+    /// The audience's linear radiance with all visibilities, every value of it finite.
     fn radiance(&mut self, subject: &S, view: &View) -> Result<Frame, RenderError> {
-        self.frame(subject, view, true)
+        let frame = self.frame(subject, view, true)?;
+        frame.check().map(|()| frame)
     }
 
     /// Display codes: sRGB-encoded clip(L / white), each pixel `0xFFBBGGRR` (bytes R, G, B, 255), into `out` of `width * height`. Who
@@ -178,6 +195,7 @@ pub trait Renderer<S>: Send {
     ) -> Result<Stats, RenderError> {
         check_display(view, white, out)?;
         let frame = self.frame(subject, view, false)?;
+        frame.check()?;
         encode::display_into(&frame, white, out);
         Ok(frame.stats)
     }

@@ -10,6 +10,7 @@ mod error;
 pub mod exposure;
 pub mod file;
 pub mod film;
+pub mod folder;
 mod frame;
 #[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 pub mod gpu;

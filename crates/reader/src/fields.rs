@@ -3,7 +3,7 @@
 //! Two ways of asking: `need`, `optional` and `given` leave it to what reads a value to refuse it; `must`, `may` and `defaulted` take a reader that
 //! knows no messages, and refuse what it makes nothing of.
 
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 
 use crate::asked::Noted;
 use crate::node::Node;
@@ -18,11 +18,18 @@ pub struct Fields<'a> {
     known: Vec<&'static str>,
 }
 
-impl<'a> Fields<'a> {
-    pub(crate) fn of(node: Node<'a>, table: &'a DeTable<'a>) -> Fields<'a> {
-        Fields { node, table, known: Vec::new() }
+// Here and not beside `Node`, which a table names: no file needs one that needs it.
+impl<'a> Node<'a> {
+    /// A table whose keys are asked for one by one.
+    pub fn table(&self) -> Option<Fields<'a>> {
+        match self.value {
+            DeValue::Table(table) => Some(Fields { node: self.clone(), table, known: Vec::new() }),
+            _ => self.wrong_type("a table"),
+        }
     }
+}
 
+impl<'a> Fields<'a> {
     /// The table itself.
     pub fn node(&self) -> &Node<'a> {
         &self.node

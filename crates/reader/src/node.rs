@@ -7,7 +7,6 @@ use toml::de::DeValue;
 
 use crate::asked::Noted;
 use crate::canonical::canonical;
-use crate::fields::Fields;
 use crate::source::Source;
 use crate::words::{did_you_mean, join, list, shorten};
 use crate::written;
@@ -17,16 +16,20 @@ use crate::written;
 pub struct Node<'a> {
     pub(crate) source: &'a Source<'a>,
     path: String,
-    value: &'a DeValue<'a>,
+    pub(crate) value: &'a DeValue<'a>,
     span: Option<Range<usize>>,
 }
 
-impl<'a> Node<'a> {
-    /// The document, which has no path.
-    pub(crate) fn root(source: &'a Source<'a>, value: &'a DeValue<'a>) -> Node<'a> {
-        Node { source, path: String::new(), value, span: None }
+// Here and not beside `Source`, which a node names: no file needs one that needs it.
+impl Source<'_> {
+    /// What `read` makes of the document; nothing where it is no TOML, whose every error is collected.
+    pub fn read<T>(&self, read: impl FnOnce(&Node) -> Option<T>) -> Option<T> {
+        let table = self.parse()?;
+        read(&Node { source: self, path: String::new(), value: &table, span: None })
     }
+}
 
+impl<'a> Node<'a> {
     fn child(&self, path: String, value: &'a Spanned<DeValue<'a>>) -> Node<'a> {
         Node { source: self.source, path, value: value.get_ref(), span: Some(value.span()) }
     }
@@ -66,6 +69,11 @@ impl<'a> Node<'a> {
         None
     }
 
+    /// Says that this value may be a mistake, though nothing is wrong with it.
+    pub fn warn(&self, about: impl Into<String>) {
+        self.source.warn_at(self.span.as_ref(), self.path.clone(), self.shown(), about.into());
+    }
+
     /// Reports what is wrong with a value of this table without showing it, or with one that it lacks.
     pub fn report(&self, key: &str, rule: impl Into<String>) {
         let there = self.get(key);
@@ -73,7 +81,7 @@ impl<'a> Node<'a> {
         self.source.refuse_at(span, self.path_of(key), None, rule.into());
     }
 
-    fn wrong_type<T>(&self, wanted: &str) -> Option<T> {
+    pub(crate) fn wrong_type<T>(&self, wanted: &str) -> Option<T> {
         let found = match self.value {
             DeValue::String(_) => "a string",
             DeValue::Integer(_) | DeValue::Float(_) => "a number",
@@ -219,14 +227,6 @@ impl<'a> Node<'a> {
             DeValue::Array(_) => self.items(read),
             DeValue::Integer(_) | DeValue::Float(_) => Some([read(self)?; 3]),
             _ => self.wrong_type("a number or [r, g, b]"),
-        }
-    }
-
-    /// A table whose keys are asked for one by one.
-    pub fn table(&self) -> Option<Fields<'a>> {
-        match self.value {
-            DeValue::Table(table) => Some(Fields::of(self.clone(), table)),
-            _ => self.wrong_type("a table"),
         }
     }
 

@@ -6,7 +6,6 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use crate::asked::{Asked, Noted};
-use crate::node::Node;
 use crate::place::{Lines, Place};
 use crate::problem::{Problem, Problems};
 use crate::words::shorten;
@@ -15,6 +14,7 @@ use crate::words::shorten;
 #[derive(Debug, Default)]
 pub struct Reading {
     problems: RefCell<Vec<Problem>>,
+    warnings: RefCell<Vec<Problem>>,
     asked: Option<RefCell<Asked>>,
 }
 
@@ -32,6 +32,11 @@ impl Reading {
     /// Whether nothing was found wrong so far.
     pub fn is_sound(&self) -> bool {
         self.problems.borrow().is_empty()
+    }
+
+    /// What may be a mistake, though nothing is wrong with it; handed out once.
+    pub fn take_warnings(&self) -> Vec<Problem> {
+        self.warnings.take()
     }
 
     /// Every problem.
@@ -72,13 +77,8 @@ pub struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// What `read` makes of the document; nothing where it is no TOML, whose every error is collected.
-    pub fn read<T>(&self, read: impl FnOnce(&Node) -> Option<T>) -> Option<T> {
-        let table = self.parse()?;
-        read(&Node::root(self, &table))
-    }
-
-    fn parse(&self) -> Option<DeValue<'a>> {
+    /// The document; nothing where it is no TOML, whose every error is collected.
+    pub(crate) fn parse(&self) -> Option<DeValue<'a>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
         for error in &errors {
             let place = error.span().map(|span| self.place(span.start));
@@ -102,8 +102,28 @@ impl<'a> Source<'a> {
         value: Option<String>,
         rule: String,
     ) {
+        self.add(self.problem_at(span, field, value, rule));
+    }
+
+    pub(crate) fn warn_at(
+        &self,
+        span: Option<&Range<usize>>,
+        field: String,
+        value: Option<String>,
+        about: String,
+    ) {
+        self.reading.warnings.borrow_mut().push(self.problem_at(span, field, value, about));
+    }
+
+    fn problem_at(
+        &self,
+        span: Option<&Range<usize>>,
+        field: String,
+        value: Option<String>,
+        rule: String,
+    ) -> Problem {
         let place = span.map(|span| self.place(span.start));
-        self.add(Problem { place, ..self.problem(field, value, rule) });
+        Problem { place, ..self.problem(field, value, rule) }
     }
 
     pub(crate) fn text_at(&self, span: Option<&Range<usize>>) -> &'a str {

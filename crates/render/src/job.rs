@@ -16,7 +16,7 @@ use sha2::{Digest, Sha256};
 
 use crate::camera::Camera;
 use crate::exposure::Rule;
-use crate::subject::{Staged, Subject};
+use crate::subject::{Staged, Subject, check_view};
 use crate::{Backend, Pixel, RenderError, Technique, View};
 
 pub use drawing::{Drawing, Drawn};
@@ -76,9 +76,22 @@ impl<S> Job<S> {
 }
 
 impl<S: Staged> Job<S> {
-    /// How many frames are asked for. Errors: an animation of a scene without a timeline.
+    /// How many frames are asked for, once nothing is known that keeps them from being drawn: neither time nor memory is spent on that.
+    ///
+    /// Errors: as [`Job::check`]; an animation or an instant of a scene without a timeline; an impossible view.
+    fn possible(&self) -> Result<usize, RenderError> {
+        self.check()?;
+        check_view(&self.scene.still(), &self.view)?;
+        self.frames()
+    }
+
+    /// How many frames are asked for. Errors: an animation or an instant of a scene without a timeline.
     fn frames(&self) -> Result<usize, RenderError> {
         match (self.output, self.scene.timeline()) {
+            (Output::Still, None) if self.time_s.is_some() => Err(RenderError::View(format!(
+                "time = {}: the scene has no [timeline] and stands still; leave the time out",
+                self.time_s.unwrap_or_default()
+            ))),
             (Output::Still, _) => Ok(1),
             (Output::Animation, Some(timeline)) => Ok(timeline.frame_count()),
             (Output::Animation, None) => Err(RenderError::View(
@@ -208,8 +221,7 @@ struct Manifest<'a> {
 /// Errors: a scene that the technique can't draw, an impossible view, knobs out of range, no adapter; an animation of a scene
 /// without a timeline.
 pub fn run<S: Staged>(job: &mut Job<S>, progress: &mut dyn FnMut(Progress)) -> Result<Stimulus, RenderError> {
-    job.check()?;
-    let frames = job.frames()?;
+    let frames = job.possible()?;
     let compared = match (&job.reference, job.output) {
         (None, _) => Vec::new(),
         (_, Output::Still) => vec![0],

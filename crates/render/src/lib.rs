@@ -11,7 +11,7 @@ pub mod techniques;
 
 pub use kelir_frame::{
     Backend, Frame, Isa, Meter, Pixel, RenderError, Renderer, Stats, View, Visibility, VisibilityModel,
-    camera, encode, exposure, file, film,
+    camera, encode, exposure, file, film, folder,
 };
 pub use kelir_theatre::{albedo, irradiance, mc, numerics, oracle, pa, pcss, penumbra, points, white};
 pub use techniques::{Technique, renderer};

@@ -5,7 +5,7 @@ use kelir_scene::{Masks, Scene, Theatre, Timeline};
 use kelir_frame::exposure::Rule;
 use kelir_frame::{Backend, RenderError, Renderer, View};
 use kelir_theatre::albedo::{self, PixelAlbedo};
-use kelir_theatre::{exposure, irradiance, penumbra, project};
+use kelir_theatre::{exposure, penumbra, project};
 
 use crate::{Technique, techniques};
 
@@ -16,6 +16,9 @@ pub trait Subject: Clone {
 
     /// The radiance shown as white on images of all of these: what is written, or else the brightest that can be seen without shadow.
     fn white(all: &[Self], view: &View) -> f64;
+
+    /// Bytes of memory that drawing it takes, about.
+    fn bytes(&self, view: &View) -> u64;
 
     /// Whether all that a timeline moves is where it is in `other`, so that both look the same.
     fn same_staging(&self, other: &Self) -> bool;
@@ -40,6 +43,9 @@ pub trait Staged {
 
     /// SHA-256 of all that its images depend on, hexadecimal.
     fn sha256(&self) -> &str;
+
+    /// What messages call it.
+    fn label(&self) -> &str;
 
     /// How it moves, if it does.
     fn timeline(&self) -> Option<&Timeline>;
@@ -67,12 +73,33 @@ pub trait Staged {
         let mut all: Vec<Self::Subject> = Vec::new();
         for frame in 0..timeline.frame_count() {
             let lit = self.lit(Some(timeline.frame_time_s(frame)));
-            if all.iter().all(|other| !other.same_staging(&lit)) {
+            if all.last().is_none_or(|last| !last.same_staging(&lit)) {
                 all.push(lit);
             }
         }
         Subject::white(&all, view)
     }
+}
+
+/// The most memory that a drawing may take, bytes.
+pub const MEMORY: u64 = 8 << 30;
+
+/// Looks at a size before anything is allocated for it.
+///
+/// Errors: a size that is not the subject's ratio, or that takes more than [`MEMORY`].
+pub fn check_view(subject: &impl Subject, view: &View) -> Result<(), RenderError> {
+    view.check(subject.sides_m())?;
+    let bytes = subject.bytes(view);
+    if bytes <= MEMORY {
+        return Ok(());
+    }
+    let gb = |bytes: u64| bytes as f64 / 1e9;
+    let [w, h] = view.size;
+    Err(RenderError::View(format!(
+        "size = {w}x{h}: drawing that takes about {:.1} GB of memory, of which at most {:.1} GB are taken; ask for fewer pixels",
+        gb(bytes),
+        gb(MEMORY)
+    )))
 }
 
 impl Subject for Theatre {
@@ -82,6 +109,16 @@ impl Subject for Theatre {
 
     fn white(all: &[Self], view: &View) -> f64 {
         exposure::white(all, view)
+    }
+
+    fn bytes(&self, view: &View) -> u64 {
+        // A pixel has its albedo, radiance, error and codes, a few times over; of each source E⁰, its mean, share and layers.
+        let sources = self.lamp.emitters.len() as u64 + 1;
+        let pixels = view.size[0] as u64 * view.size[1] as u64;
+        // A texel has its code and a sum of 64 bits.
+        let texels =
+            self.planes.iter().map(|p| (p.mask.width * p.mask.height * p.mask.channels) as u64).sum::<u64>();
+        pixels * (64 + 48 * sources) + 16 * texels
     }
 
     fn same_staging(&self, other: &Self) -> bool {
@@ -97,7 +134,7 @@ impl Subject for Theatre {
     }
 
     fn brightest(&self, view: &View) -> f64 {
-        irradiance::brightest(self, view)
+        exposure::brightest(self, view)
     }
 }
 
@@ -107,6 +144,10 @@ impl Staged for Scene {
 
     fn sha256(&self) -> &str {
         self.sha256()
+    }
+
+    fn label(&self) -> &str {
+        self.label()
     }
 
     fn timeline(&self) -> Option<&Timeline> {

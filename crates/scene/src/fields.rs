@@ -7,10 +7,9 @@ use glam::DVec3;
 use image::DynamicImage;
 use kelir_reader::Node;
 
-use crate::colour::{srgb_to_linear, srgb8_to_linear};
 use crate::limits::{self, COORDINATE_M, LENGTH_M, RADIANCE};
 use crate::load::Loader;
-use crate::puppet::bitmap;
+use crate::picture::Picture;
 use crate::theatre::{Albedo, Ambient, Emitter, EmitterShape, Exposure, LinearImage, Screen};
 use crate::weave::Weave;
 
@@ -86,33 +85,34 @@ fn cloth(
     Some(Albedo::Image(Arc::new(cloth)))
 }
 
-/// An opaque sRGB image, linearised.
+/// An opaque image, linearised as it says.
 fn albedo_image(node: &Node, name: &str, loader: &Loader) -> Option<LinearImage> {
     let (_, bytes) = loader.read(name, node, limits::IMAGE_BYTES)?;
-    let image = match bitmap::decode(&bytes) {
-        Ok(image) => image,
+    let picture = match Picture::decode(&bytes) {
+        Ok(picture) => picture,
         Err(rule) => return node.refuse(rule),
     };
-    let (width, height) = (image.width() as usize, image.height() as usize);
+    let (width, height) = (picture.image.width() as usize, picture.image.height() as usize);
     let deep = matches!(
-        image,
+        picture.image,
         DynamicImage::ImageRgb16(_)
             | DynamicImage::ImageRgba16(_)
             | DynamicImage::ImageLuma16(_)
             | DynamicImage::ImageLumaA16(_)
     );
+    let linear = match picture.linear(if deep { 1 << 16 } else { 1 << 8 }) {
+        Ok(linear) => linear,
+        Err(rule) => return node.refuse(rule),
+    };
     let opaque = "an albedo image must be opaque: cloth has no alpha";
     let rgb = if deep {
-        let linear: Vec<f32> =
-            (0..=u16::MAX).map(|c| srgb_to_linear(f64::from(c) / 65535.0) as f32).collect();
-        let image = image.into_rgba16();
+        let image = picture.image.into_rgba16();
         if image.pixels().any(|p| p.0[3] != u16::MAX) {
             return node.refuse(opaque);
         }
         image.pixels().map(|p| [p.0[0], p.0[1], p.0[2]].map(|c| linear[c as usize])).collect()
     } else {
-        let linear = srgb8_to_linear();
-        let image = image.into_rgba8();
+        let image = picture.image.into_rgba8();
         if image.pixels().any(|p| p.0[3] != u8::MAX) {
             return node.refuse(opaque);
         }

@@ -10,6 +10,7 @@ mod colour;
 mod fields;
 pub mod limits;
 mod load;
+mod picture;
 mod puppet;
 #[cfg(test)]
 mod reference;

@@ -25,12 +25,14 @@ use crate::timeline::{self, Driven, Target, Timeline};
 /// every corner of every plane lies strictly between lamp and screen (for a timeline: at every frame and key).
 #[derive(Debug)]
 pub struct Scene {
+    label: String,
     sha256: String,
     toml: String,
     puppets: Vec<Puppet>,
     staging: Staging,
     timeline: Option<Timeline>,
     still: Theatre,
+    warnings: Vec<Problem>,
 }
 
 impl Scene {
@@ -56,6 +58,16 @@ impl Scene {
     /// Everything that is wrong with the scene and the files that it names.
     pub fn parse(name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, Problems> {
         read(name, name, toml, assets)
+    }
+
+    /// What messages call it: the file that it was read from.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// What may be a mistake in it or in the files that it names, though it can be drawn.
+    pub fn warnings(&self) -> &[Problem] {
+        &self.warnings
     }
 
     /// SHA-256, in hexadecimal, over the scene's values (not its comments or layout) and every file that it names.
@@ -118,7 +130,8 @@ impl Scene {
 fn read(label: &str, name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, Problems> {
     let reading = Reading::default();
     let scene = read_into(&reading, label, name, toml, assets);
-    reading.end(scene)
+    let warnings = reading.take_warnings();
+    reading.end(scene.map(|scene| Scene { warnings, ..scene }))
 }
 
 /// Reads a scene with the files that it names into a reading.
@@ -136,10 +149,10 @@ pub(crate) fn read_into(
         source.refuse("", None, rule);
         return None;
     }
-    source.read(|root| read_scene(root, name, loader))
+    source.read(|root| read_scene(root, label, name, loader))
 }
 
-fn read_scene(root: &Node, name: &str, loader: Loader) -> Option<Scene> {
+fn read_scene(root: &Node, label: &str, name: &str, loader: Loader) -> Option<Scene> {
     let mut sections = root.table()?;
     let subject = sections.optional(
         "subject",
@@ -206,7 +219,16 @@ fn read_scene(root: &Node, name: &str, loader: Loader) -> Option<Scene> {
     let planes = settled.collect();
     let still = Theatre { screen, lamp, ambient, planes, exposure };
     let sha256 = hash(&root.canonical(), loader.files());
-    Some(Scene { sha256, toml: root.to_toml(), puppets, staging, timeline, still })
+    Some(Scene {
+        label: label.to_owned(),
+        sha256,
+        toml: root.to_toml(),
+        puppets,
+        staging,
+        timeline,
+        still,
+        warnings: Vec::new(),
+    })
 }
 
 fn read_puppets<'a>(sections: &mut Fields<'a>, name: &str, loader: &Loader) -> Vec<Option<Entry<'a>>> {

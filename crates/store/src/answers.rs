@@ -1,19 +1,19 @@
 //! Answers: appended once, never changed.
 
+use crate::answer_row::{AnswerRow, answer_hash, read_answer};
 use crate::clock;
 use crate::error::StoreError;
 use crate::files::sha256_hex;
-use crate::first_chain::{self, GENESIS};
-use crate::plans::{PlannedTrial, decided, insert_trials, next_trial, plan_of, trial};
-use crate::sessions::{Session, session};
+use crate::first_chain::{self, genesis};
+use crate::plans::{NextTrials, PlannedTrial, decided, insert_trials, next_trial, plan_of, trial};
+use crate::session_row::{Session, session};
+use crate::sessions;
 use crate::sqlite::Store;
 use crate::writer::Refused;
-use kelir_study::trials::{Checked, Role};
+use kelir_study::trials::Checked;
 use rusqlite::{Connection, OptionalExtension, params};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
-use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 use std::collections::BTreeMap;
 
@@ -88,46 +88,6 @@ pub struct StoredAnswer {
     pub payload: Option<Value>,
 }
 
-/// One stimulus of a trial.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ShownStimulus {
-    /// Item's id.
-    pub item: String,
-    /// Condition's name.
-    pub condition: String,
-    /// Hash of the file.
-    pub sha256: String,
-    /// Hash of its decoded pixels.
-    pub pixels_sha256: String,
-}
-
-/// An answer as stored.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AnswerRow {
-    /// Version of the chain that it is part of: 1 (all studies in one, closed) or 2 (one a study).
-    pub chain: u32,
-    /// Place in its chain, from 1.
-    pub seq: i64,
-    /// Session's id.
-    pub session_id: String,
-    /// Whose session.
-    pub subject_id: String,
-    /// 0-based place in the session.
-    pub trial_index: u32,
-    /// Kind of the trial.
-    pub trial_kind: String,
-    /// What it showed.
-    pub shown: BTreeMap<Role, ShownStimulus>,
-    /// When the server committed it, ISO-8601 UTC.
-    pub received_at: String,
-    /// What was answered, as canonical JSON; `None` once withdrawn.
-    pub answer: Option<String>,
-    /// What the chain holds of answer and payload: of version 1 the payload's SHA-256, of version 2 that of nonce, answer and payload.
-    pub answer_hash: String,
-    /// Everything that the page sent; `None` once withdrawn.
-    pub payload: Option<String>,
-}
-
 /// What a session has been shown and has answered, for whoever decides what comes next.
 #[derive(Debug)]
 pub struct Progress {
@@ -135,15 +95,6 @@ pub struct Progress {
     pub trials: Vec<PlannedTrial>,
     /// Answers by trial index, as canonical JSON.
     pub answers: BTreeMap<u32, String>,
-}
-
-/// What comes next in a session.
-#[derive(Clone, Debug, Default)]
-pub struct NextTrials {
-    /// The trials that follow those decided before.
-    pub trials: Vec<PlannedTrial>,
-    /// Whether answers will decide others.
-    pub more: bool,
 }
 
 impl Store {
@@ -240,7 +191,7 @@ fn take<E>(
     let (mut trials, mut answered) = (Vec::new(), Vec::new());
     if let Some(known) = known {
         trials = decided(writer, &session.session_id, known)?;
-        answered = crate::sessions::answered(writer, &session.session_id)?;
+        answered = sessions::answered(writer, &session.session_id)?;
     }
     let next_trial = next_trial(writer, &session.session_id)?;
     Ok(Taken { session, appended, next_trial, more, trials, answered })
@@ -339,9 +290,6 @@ pub(crate) struct Head {
     row_hash: String,
 }
 
-/// A row as it is stored and hashed: (study, seq, session, trial_index, trial_kind, shown, received_at, answer_hash, prev_hash).
-pub(crate) type RowValues<T> = (String, i64, String, u32, String, T, String, String, String);
-
 impl Head {
     /// The last row's; for a study without any, what its chain begins with.
     pub(crate) fn read(writer: &Connection, study_id: &str) -> Result<Head, StoreError> {
@@ -392,37 +340,4 @@ impl Head {
         *self = Head { seq, row_hash };
         Ok(())
     }
-}
-
-/// What a chain of version 2 begins with: the last hash of version 1.
-pub(crate) fn genesis(connection: &Connection) -> Result<String, StoreError> {
-    let mut last =
-        connection.prepare_cached("SELECT row_hash FROM responses ORDER BY response_id DESC LIMIT 1")?;
-    Ok(last.query_row([], |row| row.get(0)).optional()?.unwrap_or_else(|| GENESIS.to_owned()))
-}
-
-/// SHA-256 (hex) over nonce, answer, line feed and payload.
-pub(crate) fn answer_hash(nonce: &[u8], answer: &[u8], payload: &[u8]) -> String {
-    let parts = [nonce, answer, b"\n", payload];
-    let hasher = parts.into_iter().fold(Sha256::new(), |hasher, part| hasher.chain_update(part));
-    hex::encode(hasher.finalize())
-}
-
-pub(crate) fn read_answer(row: &SqliteRow) -> Result<AnswerRow, StoreError> {
-    let values: RowValues<BTreeMap<Role, ShownStimulus>> =
-        serde_json::from_str(row.try_get("row")?).map_err(|error| StoreError::corrupt("answer", error))?;
-    let (_, seq, session_id, trial_index, trial_kind, shown, received_at, answer_hash, _) = values;
-    Ok(AnswerRow {
-        chain: 2,
-        seq,
-        session_id,
-        subject_id: row.try_get("subject_id")?,
-        trial_index,
-        trial_kind,
-        shown,
-        received_at,
-        answer: row.try_get("answer")?,
-        answer_hash,
-        payload: row.try_get("payload")?,
-    })
 }

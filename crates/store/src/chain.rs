@@ -1,18 +1,18 @@
 //! The chains of answers, proved: no answer was changed, removed from the middle, reordered or slipped in.
 
-use crate::answers::{RowValues, answer_hash, genesis};
+use crate::answer_row::{RowValues, answer_hash};
 use crate::clock;
 use crate::error::StoreError;
 use crate::files::sha256_hex;
-use crate::first_chain::{self, FirstRow, GENESIS};
+use crate::first_chain::{self, FirstRow, GENESIS, genesis};
 use crate::sqlite::Store;
-use crate::stimuli::patiently;
+use crate::text::{bytes, text};
+use crate::threads::patiently;
 use rusqlite::params;
 use serde::Serialize;
 use serde::de::IgnoredAny;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
-use std::borrow::Cow;
 use tokio::runtime::Handle;
 use utoipa::ToSchema;
 
@@ -214,14 +214,4 @@ fn faults(row: &SqliteRow, held: &Held<'_>, previous: (i64, &str)) -> Result<Vec
         Held::Whole(_) | Held::Blanked => {}
     }
     Ok(faults)
-}
-
-/// A stored text to the byte, for what was tampered with need not be UTF-8.
-pub(crate) fn bytes<'a>(row: &'a SqliteRow, column: &str) -> Result<Option<&'a [u8]>, sqlx::Error> {
-    row.try_get_unchecked(column)
-}
-
-/// A stored text, to compare with.
-pub(crate) fn text<'a>(row: &'a SqliteRow, column: &str) -> Result<Cow<'a, str>, sqlx::Error> {
-    Ok(String::from_utf8_lossy(bytes(row, column)?.unwrap_or_default()))
 }

@@ -1,11 +1,12 @@
 //! Chain version 1: the answers of before there were kinds of trials, one chain for all studies, closed since. Its rows stay as they are,
 //! readable and verified by their own rule.
 
-use crate::answers::{AnswerRow, ShownStimulus};
-use crate::chain::{bytes, text as text_of};
+use crate::answer_row::{AnswerRow, ShownStimulus};
 use crate::error::StoreError;
 use crate::files::sha256_hex;
+use crate::text::{bytes, text as text_of};
 use kelir_study::trials::Role;
+use rusqlite::{Connection, OptionalExtension};
 use serde_json::{Value, json};
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
@@ -13,6 +14,13 @@ use std::collections::BTreeMap;
 
 /// `prev_hash` of the first row.
 pub const GENESIS: &str = "0000000000000000000000000000000000000000000000000000000000000000";
+
+/// What a chain of version 2 begins with: the last hash of version 1.
+pub(crate) fn genesis(connection: &Connection) -> Result<String, StoreError> {
+    let mut last =
+        connection.prepare_cached("SELECT row_hash FROM responses ORDER BY response_id DESC LIMIT 1")?;
+    Ok(last.query_row([], |row| row.get(0)).optional()?.unwrap_or_else(|| GENESIS.to_owned()))
+}
 
 /// Columns of a row with what it refers to.
 pub(crate) const SELECT: &str =

@@ -4,7 +4,7 @@ use crate::answers::{Head, NewAnswer};
 use crate::clock;
 use crate::error::StoreError;
 use crate::plans::{PlannedSession, insert_trials};
-use crate::sessions::{Session, insert_session};
+use crate::session_row::{Session, insert_session};
 use crate::sqlite::Store;
 use rusqlite::Connection;
 use serde_json::json;

@@ -1,8 +1,9 @@
 //! Whether the database is whole, as SQLite itself sees it.
 
+use crate::connection::DATABASE;
 use crate::error::StoreError;
-use crate::sqlite::{DATABASE, Store};
-use crate::stimuli::patiently;
+use crate::sqlite::Store;
+use crate::threads::patiently;
 use rusqlite::{Connection, OpenFlags};
 use std::time::Duration;
 

@@ -3,10 +3,12 @@
 //! What a method has returned `Ok` for is committed and synced. One connection writes, so that the chain of answers has one
 //! order; several read. [`Store`] is the one type the rest of kelir knows; which database is behind it is its own business.
 
+mod answer_row;
 mod answers;
 mod background;
 mod chain;
 mod clock;
+mod connection;
 mod error;
 mod files;
 mod first_chain;
@@ -15,6 +17,7 @@ mod import;
 mod integrity;
 mod layout;
 mod lock;
+mod open;
 mod packing;
 mod packings;
 mod persons;
@@ -25,18 +28,20 @@ mod private;
 mod readers;
 mod reading;
 mod researchers;
+mod session_row;
 mod sessions;
 mod shown;
 mod slots;
 mod sqlite;
 mod stimuli;
+mod text;
+mod threads;
 mod upgrade;
 mod versions;
 mod writer;
 
-pub use answers::{
-    AnswerRow, Appended, NewAnswer, NextTrials, Progress, SentAnswer, ShownStimulus, StoredAnswer, Taken,
-};
+pub use answer_row::{AnswerRow, ShownStimulus};
+pub use answers::{Appended, NewAnswer, Progress, SentAnswer, StoredAnswer, Taken};
 pub use background::{background, step_back};
 pub use chain::{ChainReport, Fault};
 pub use clock::micros;
@@ -48,12 +53,13 @@ pub use lock::FolderLock;
 pub use packing::{PACKED, packed_bytes, step_bytes};
 pub use packings::{PackedSize, Packing};
 pub use persons::Begun;
-pub use pixels::picture_size;
-pub use plans::{PlannedSession, PlannedTrial, SizedStimuli, StimulusHashes};
+pub use pixels::{ANIMATION, picture_size};
+pub use plans::{NextTrials, PlannedSession, PlannedTrial, SizedStimuli, StimulusHashes};
 pub use private::private_file;
 pub use reading::StoredAnswers;
-pub use sessions::{Completed, NewSession, Participants, Session, SessionKind};
+pub use session_row::{NewSession, Session, SessionKind};
+pub use sessions::{Completed, Participants};
 pub use shown::ShownSize;
 pub use sqlite::Store;
-pub use stimuli::{ANIMATION, Render, StimulusInfo, StudyStimulus};
+pub use stimuli::{Render, StimulusInfo, StudyStimulus};
 pub use versions::{StudyVersion, VersionCounts};

@@ -4,8 +4,7 @@
 //! before it and twice as high: above, what is brighter, which is added; below, what is darker, which is taken away. A canvas can do both by
 //! itself ("lighter", "difference"), so that a page needs to read no pixels back: browsers that guard against fingerprints falsify those.
 
-use crate::pixels::{self, Manifest, Pixels, PixelsHash};
-use crate::stimuli::ANIMATION;
+use crate::pixels::{self, ANIMATION, Manifest, Pixels, PixelsHash};
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder, Rgba, RgbaImage};
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,8 @@ use crate::clock;
 use crate::error::StoreError;
 use crate::packing::{PACKER, pack, unpacked};
 use crate::sqlite::Store;
-use crate::stimuli::{StimulusInfo, blocking, patiently};
+use crate::stimuli::StimulusInfo;
+use crate::threads::{blocking, patiently};
 use rusqlite::{OptionalExtension, Row, params};
 
 /// A stored stimulus as browsers get it.

@@ -2,7 +2,7 @@
 
 use crate::clock;
 use crate::error::StoreError;
-use crate::sessions::{NewSession, Session, SessionKind, read_session, session_columns};
+use crate::session_row::{NewSession, Session, SessionKind, read_session, session_columns};
 use crate::sqlite::Store;
 use kelir_study::Repeat;
 use kelir_study::visits::{Flag, Visit};

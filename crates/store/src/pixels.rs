@@ -1,10 +1,12 @@
 //! What a stimulus shows, whatever its file is like: a hash over decoded pixels, so that a file may be packed anew without a new version.
 
-use crate::stimuli::ANIMATION;
 use image::{DynamicImage, ImageDecoder, ImageReader, RgbaImage};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use std::io::Cursor;
+
+/// Media type of an animation's manifest.
+pub const ANIMATION: &str = "application/vnd.kelir.animation+json";
 
 /// Size and pixels of a stimulus.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Plans: what each trial of a session shows, appended as it is decided.
 
-use crate::answers::{NextTrials, ShownStimulus};
+use crate::answer_row::ShownStimulus;
 use crate::error::StoreError;
 use crate::sqlite::Store;
 use kelir_study::trials::Role;
@@ -15,6 +15,15 @@ pub struct PlannedSession {
     pub seed: String,
     /// The first trials, and whether answers will decide others.
     pub next: NextTrials,
+}
+
+/// What comes next in a session.
+#[derive(Clone, Debug, Default)]
+pub struct NextTrials {
+    /// The trials that follow those decided before.
+    pub trials: Vec<PlannedTrial>,
+    /// Whether answers will decide others.
+    pub more: bool,
 }
 
 /// The hashes of a stimulus.

@@ -1,10 +1,10 @@
 //! Connections that read, each in use by one at a time.
 
+use crate::connection;
 use crate::error::StoreError;
-use crate::sqlite::BUSY;
-use crate::stimuli::blocking;
-use rusqlite::{Connection, OpenFlags};
-use std::path::{Path, PathBuf};
+use crate::threads::blocking;
+use rusqlite::Connection;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Connections that are kept for the next who reads.
@@ -29,7 +29,7 @@ impl Readers {
         let readers = self.clone();
         blocking(move || {
             let kept = readers.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-            let connection = kept.map_or_else(|| connect(&readers.path), Ok)?;
+            let connection = kept.map_or_else(|| connection::reading(&readers.path), Ok)?;
             // One that failed is not kept.
             let value = job(&connection)?;
             let mut idle = readers.idle.lock().unwrap_or_else(PoisonError::into_inner);
@@ -44,12 +44,4 @@ impl Readers {
     pub(crate) fn close(&self) {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).clear();
     }
-}
-
-/// A connection that reads.
-pub(crate) fn connect(path: &Path) -> Result<Connection, StoreError> {
-    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = Connection::open_with_flags(path, flags)?;
-    connection.busy_timeout(BUSY)?;
-    Ok(connection)
 }

@@ -4,10 +4,10 @@
 //! rusqlite: the same SQLite library in the same process, read-only, on as many threads as there are cores.
 
 use crate::clock::micros;
+use crate::connection::{self, DATABASE};
 use crate::error::StoreError;
-use crate::readers::connect;
-use crate::sqlite::{DATABASE, Store};
-use crate::stimuli::patiently;
+use crate::sqlite::Store;
+use crate::threads::patiently;
 use kelir_study::StudyDefinition;
 use kelir_study::answers::{Answers, Row};
 use kelir_study::trials::{Shown, rules};
@@ -213,7 +213,8 @@ impl Source {
     /// The answers of a chain after a row, in parts by rising rows of at least `share`, and the number of the last.
     fn read(&self, chain: &Chain, after: i64, share: i64) -> Result<(i64, Vec<Answers>), StoreError> {
         let through: i64 =
-            connect(&self.database)?.query_row(chain.newest, [&*self.study_id], |row| row.get(0))?;
+            connection::reading(&self.database)?
+                .query_row(chain.newest, [&*self.study_id], |row| row.get(0))?;
         if through <= after {
             return Ok((after, Vec::new()));
         }
@@ -234,7 +235,7 @@ impl Source {
     }
 
     fn read_part(&self, chain: &Chain, range: RangeInclusive<i64>) -> Result<Answers, StoreError> {
-        let connection = connect(&self.database)?;
+        let connection = connection::reading(&self.database)?;
         let version =
             connection.prepare("SELECT version FROM sessions WHERE session_id = ?1 AND study_id = ?2")?;
         let mut part = Part { source: self, version, ours: HashMap::new(), answers: self.empty.clone() };

@@ -1,11 +1,11 @@
 //! Stimuli: bytes made once, with where they came from.
 
-use crate::background::background;
 use crate::clock;
 use crate::error::StoreError;
 use crate::files::is_sha256;
 use crate::pixels;
 use crate::sqlite::Store;
+use crate::threads::{blocking, patiently};
 use rusqlite::params;
 use serde::Serialize;
 use serde_json::Value;
@@ -53,9 +53,6 @@ pub struct StudyStimulus {
     /// How it was made, with its measured error.
     pub provenance: Value,
 }
-
-/// Media type of an animation's manifest.
-pub const ANIMATION: &str = "application/vnd.kelir.animation+json";
 
 impl Store {
     /// Stores bytes and returns what is known of them; file first, row second, so that a row never points at nothing. The frames that a
@@ -194,22 +191,4 @@ impl Store {
 
 pub(crate) fn read_json(text: String) -> Result<Value, StoreError> {
     serde_json::from_str(&text).map_err(|e| StoreError::corrupt("provenance", e))
-}
-
-/// Work on pictures, which takes long, behind everybody who answers.
-pub(crate) async fn patiently<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, StoreError> + Send + 'static,
-) -> Result<T, StoreError> {
-    let lost = || StoreError::corrupt("task", "did not end");
-    background(work).await.unwrap_or_else(|| Err(lost()))
-}
-
-/// File work off the async threads.
-pub(crate) async fn blocking<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, StoreError> + Send + 'static,
-) -> Result<T, StoreError> {
-    match tokio::task::spawn_blocking(work).await {
-        Ok(result) => result,
-        Err(error) => Err(StoreError::corrupt("file task", error)),
-    }
 }

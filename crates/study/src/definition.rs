@@ -1,9 +1,11 @@
 //! What a study is, once its file has been read and found right.
 
+mod shown;
+
 use crate::adaptive::Adaptive;
 use crate::conduct::{ResponseRules, SessionRules};
 use crate::display::DisplayRules;
-use crate::languages::{self, Translation};
+use crate::languages::{self, Texts, Translation};
 use crate::trials::{TrialKind, TrialName};
 use crate::visits::{Flag, parameter};
 use kelir_stats::psychometric::{Lapse, Sigmoid};
@@ -92,21 +94,6 @@ pub(crate) const PANEL_PARAMS: [&str; 10] = [
 
 /// Those by which a panel credits who comes back, without a code of ours: SONA's survey code under its usual names, MTurk's assignment.
 pub(crate) const CREDITING_PARAMS: [&str; 4] = ["survey_code", "id", "subject_id", "assignmentId"];
-
-/// What participants read; each text is a list of plain paragraphs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Texts {
-    /// First page.
-    pub welcome: Vec<String>,
-    /// What taking part means.
-    pub consent: Vec<String>,
-    /// What to do, with the keys.
-    pub instructions: Vec<String>,
-    /// What was shown and measured, told afterwards.
-    pub debriefing: Vec<String>,
-    /// Last words, beside the completion code.
-    pub thanks: Vec<String>,
-}
 
 /// Where the pictures of a condition come from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]

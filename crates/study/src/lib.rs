@@ -27,10 +27,10 @@ pub mod visits;
 pub use conduct::{NEWEST_EDITION, Repeat, ResponseRules, SessionRules};
 pub use definition::{
     Block, Completion, Condition, Direction, GUESS, Item, Kind, Pictures, Psychometric, Screening,
-    StudyDefinition, Texts,
+    StudyDefinition,
 };
 pub use display::{DisplayRules, Fit};
 pub use kelir_reader::{Problem, Problems};
-pub use languages::Translation;
+pub use languages::{Texts, Translation};
 pub use plan::{Decision, Procedures, Trial, TrialPlan, next_trials};
 pub use trials::TrialKind;

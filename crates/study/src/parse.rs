@@ -1,22 +1,21 @@
 //! From a study file's text to a [`StudyDefinition`], or to every problem it has.
 
 mod adaptive;
+mod blocks;
 mod completion;
 mod conditions;
+mod display;
+mod languages;
 mod psychometric;
+mod texts;
 
+use self::texts::{QUESTION, TITLE};
 use crate::conduct::{NEWEST_EDITION, ResponseRules, SessionRules};
-use crate::definition::{Block, EquivalenceBound, Item, ItemsKey, Kind, Screening, StudyDefinition, Texts};
-use crate::display;
+use crate::definition::{Block, EquivalenceBound, Screening, StudyDefinition};
 use crate::fields::{IDENTIFIER, SECTION, identifier, integer, number, text};
-use crate::languages;
-use crate::trials::TrialKind;
 use crate::visits::Flag;
 use kelir_reader::{Fields, Node, Problem, Problems, Reading, Source};
 use std::collections::BTreeSet;
-
-pub(crate) const TITLE: &str = "a text of 1 to 200 characters, none of them a control character";
-pub(crate) const QUESTION: &str = "a text of 1 to 300 characters, none of them a control character";
 
 impl StudyDefinition {
     /// Reads a study file. `file` names it in messages; its stem is the study's id.
@@ -78,10 +77,10 @@ fn read_study(source: &Source, file: &str, root: &Node) -> Option<StudyDefinitio
     let completion = completion::read(&mut fields, session.as_ref(), edition);
     let screening = read_screening(&mut fields);
     let equivalence = read_equivalence(&mut fields);
-    let texts = read_texts(&mut fields);
-    let language = languages::read_language(&mut fields);
+    let texts = texts::read(&mut fields);
+    let language = languages::read_own(&mut fields);
     let translations = languages::read_translations(&mut fields, language.as_deref());
-    let blocks = read_blocks(&mut fields);
+    let blocks = blocks::read(&mut fields);
     let conditions = conditions::read(&mut fields, &blocks, size.map(|_| display.sizes.len().max(1)));
     fields.done();
     Some(StudyDefinition {
@@ -143,155 +142,6 @@ fn read_equivalence(fields: &mut Fields<'_>) -> Option<EquivalenceBound> {
     let reason = fields.must("reason", rule, |v| text(v, 1000));
     fields.done();
     Some(EquivalenceBound { within: within?, reason: reason? })
-}
-
-pub(crate) fn read_texts(fields: &mut Fields<'_>) -> Option<Texts> {
-    let mut fields = fields.need(
-        "texts",
-        "a table with welcome, consent, instructions, debriefing and thanks",
-        Node::table,
-    )?;
-    let mut read = |key| {
-        fields.must(
-            key,
-            "plain text of at most 20000 characters, paragraphs apart by an empty line",
-            paragraphs,
-        )
-    };
-    let texts = (read("welcome"), read("consent"), read("instructions"), read("debriefing"), read("thanks"));
-    fields.done();
-    let (welcome, consent, instructions, debriefing, thanks) = texts;
-    Some(Texts {
-        welcome: welcome?,
-        consent: consent?,
-        instructions: instructions?,
-        debriefing: debriefing?,
-        thanks: thanks?,
-    })
-}
-
-/// Paragraphs are apart by an empty line; a line break inside one is a blank.
-fn paragraphs(value: &Node) -> Option<Vec<String>> {
-    let text = text(value, 20_000)?;
-    let mut paragraphs = vec![String::new()];
-    for line in text.lines().map(str::trim) {
-        let last = paragraphs.last_mut()?;
-        match (line.is_empty(), last.is_empty()) {
-            (true, true) => {}
-            (true, false) => paragraphs.push(String::new()),
-            (false, true) => last.push_str(line),
-            (false, false) => {
-                last.push(' ');
-                last.push_str(line);
-            }
-        }
-    }
-    Some(paragraphs)
-}
-
-/// A block with where it and its items stand in the file.
-struct ReadBlock<'a> {
-    block: Block,
-    node: Node<'a>,
-    items: Vec<Node<'a>>,
-}
-
-fn read_blocks<'a>(fields: &mut Fields<'a>) -> Vec<ReadBlock<'a>> {
-    let (mut block_ids, mut pair_ids) = (BTreeSet::new(), BTreeSet::new());
-    let mut blocks = Vec::new();
-    for mut fields in fields.tables("blocks") {
-        let id = read_id(&mut fields, &mut block_ids);
-        let title = fields.must("title", TITLE, |v| text(v, 200));
-        let kind = fields.must("kind", "\"still\" or \"animation\"", |v| match v.as_str()? {
-            "still" => Some(Kind::Still),
-            "animation" => Some(Kind::Animation),
-            _ => None,
-        });
-        let conditions = fields.must("conditions", "two different condition names", |v| {
-            let [a, b] = &v.as_array()?[..] else { return None };
-            let (a, b) = (a.as_str()?, b.as_str()?);
-            (identifier(a) && identifier(b) && a != b).then(|| [a.to_owned(), b.to_owned()])
-        });
-        let target = fields.must("target", "one of the block's two conditions", |v| {
-            let target = v.as_str()?;
-            conditions.as_ref().is_none_or(|c| c.iter().any(|name| name == target)).then(|| target.to_owned())
-        });
-        let catch = fields.may("catch", "true or false", Node::as_bool).unwrap_or(false);
-        let (mut items, mut nodes) = (Vec::new(), Vec::new());
-        let key = items_key(&fields);
-        for mut fields in fields.tables(key) {
-            let id = read_id(&mut fields, &mut pair_ids);
-            let scene =
-                fields.may("scene", "a scene file relative to the study file, ending in .toml", |v| {
-                    text(v, 400).filter(|s| relative(s) && s.ends_with(".toml"))
-                });
-            let level = fields.may("level", "a finite number within ±1e12", |v| number(v, -1e12, 1e12));
-            if let Some(id) = id {
-                items.push(Item { id, scene, level });
-                nodes.push(fields.node().clone());
-            }
-            fields.done();
-        }
-        let psychometric = psychometric::read(&mut fields, key, (&items, &nodes), catch);
-        let adaptive = adaptive::read(&mut fields);
-        if adaptive.is_some() && psychometric.is_none() {
-            fields.report("adaptive", "needs the block's [blocks.psychometric], whose levels it moves over");
-        }
-        let trial = TrialKind::read(&mut fields);
-        let node = fields.node().clone();
-        fields.done();
-        if let (Some(id), Some(title), Some(kind), Some(conditions), Some(target), Some(trial)) =
-            (id, title, kind, conditions, target, trial)
-        {
-            let block = Block {
-                id,
-                title,
-                kind,
-                conditions,
-                target,
-                items,
-                items_key: ItemsKey(key),
-                catch,
-                trial,
-                adaptive,
-                psychometric,
-            };
-            check_adaptive(&node, &block);
-            blocks.push(ReadBlock { block, node, items: nodes });
-        }
-    }
-    let trials: usize = blocks.iter().map(|read| read.block.most_trials()).sum();
-    if trials > 10_000 {
-        fields.report("blocks", format!("have {trials} trials; a study has at most 10000"));
-    }
-    blocks
-}
-
-/// Whether the procedure goes with the block's levels.
-fn check_adaptive(node: &Node, block: &Block) {
-    let (Some(adaptive), Some(_)) = (&block.adaptive, &block.psychometric) else { return };
-    if let Err(error) = adaptive.next_level(block, []) {
-        node.report("adaptive", error.to_string());
-    }
-}
-
-/// The key that the block's items stand under: `items`, or `pairs` as it used to be called.
-fn items_key(block: &Fields<'_>) -> &'static str {
-    if block.has("pairs") && !block.has("items") { "pairs" } else { "items" }
-}
-
-fn read_id(fields: &mut Fields<'_>, taken: &mut BTreeSet<String>) -> Option<String> {
-    fields.need("id", IDENTIFIER, |node| {
-        let id = node.must(IDENTIFIER, |v| v.as_str().filter(|s| identifier(s)).map(str::to_owned))?;
-        if !taken.insert(id.clone()) {
-            node.refuse::<()>("must be unique in the study");
-        }
-        Some(id)
-    })
-}
-
-fn relative(path: &str) -> bool {
-    !path.starts_with('/') && !path.contains(['\\', ':', '\0'])
 }
 
 #[cfg(test)]

@@ -116,10 +116,10 @@ mod tests {
     fn study(screening: &str) -> StudyDefinition {
         let block = |id: &str, catch: &str| {
             let items = fixtures::items((0..3).map(|i| format!("{id}{i}")), "a.toml");
-            fixtures::block(id, &format!("{items}{catch}"))
+            fixtures::block(id, &[("items", &items), ("catch", catch)])
         };
-        let blocks = [block("main", ""), block("easy", "catch = true")];
-        let text = fixtures::study(&format!("screening = {{ {screening} }}"), blocks);
+        let blocks = [block("main", "false"), block("easy", "true")];
+        let text = fixtures::study(&[("screening", &format!("{{ {screening} }}"))], blocks);
         StudyDefinition::parse("s.toml", &text).unwrap()
     }
 

@@ -1,6 +1,6 @@
 //! The screen's albedo on the output's pixel grid.
 
-use kelir_frame::{Pixel, View};
+use kelir_frame::{Pixel, View, multiversion};
 use kelir_scene::{Albedo, LinearImage, Screen};
 use rayon::prelude::*;
 
@@ -59,7 +59,6 @@ fn cells(k: usize, n: usize, source: usize, pixel: Pixel) -> (usize, Vec<f64>) {
 struct Columns {
     first: Vec<usize>,
     weights: Vec<f64>,
-    most: usize,
 }
 
 impl Columns {
@@ -67,23 +66,25 @@ impl Columns {
         let cells: Vec<_> = (0..n).map(|i| cells(i, n, source, pixel)).collect();
         let most = cells.iter().map(|(_, weights)| weights.len()).max().unwrap_or(1);
         let weight = |k: usize| cells.iter().map(move |(_, w)| w.get(k).copied().unwrap_or(0.0));
-        Self {
-            weights: (0..most).flat_map(weight).collect(),
-            first: cells.iter().map(|c| c.0).collect(),
-            most,
-        }
+        Self { weights: (0..most).flat_map(weight).collect(), first: cells.iter().map(|c| c.0).collect() }
     }
 
     /// Adds `weight` times the means of channel `c` of a row of texels.
     fn add(&self, row: &[[f32; 3]], c: usize, weight: f64, sums: &mut [f64]) {
-        for (i, sum) in sums.iter_mut().enumerate() {
-            for k in 0..self.most {
-                let texel = row[(self.first[i] + k).min(row.len() - 1)][c];
-                *sum += weight * self.weights[k * self.first.len() + i] * f64::from(texel);
-            }
+        add(&self.first, &self.weights, row, c, weight, sums);
+    }
+}
+
+#[inline(always)]
+fn add_generic(first: &[usize], weights: &[f64], row: &[[f32; 3]], c: usize, weight: f64, sums: &mut [f64]) {
+    for (k, weights) in weights.chunks_exact(first.len()).enumerate() {
+        for ((sum, first), w) in sums.iter_mut().zip(first).zip(weights) {
+            let texel = row[(first + k).min(row.len() - 1)][c];
+            *sum += weight * w * f64::from(texel);
         }
     }
 }
+multiversion! { fn add(first: &[usize], weights: &[f64], row: &[[f32; 3]], c: usize, weight: f64, sums: &mut [f64]) = add_generic; }
 
 fn resample(image: &LinearImage, view: &View) -> Vec<Vec<f32>> {
     let [w, h] = view.size;
@@ -103,4 +104,49 @@ fn resample(image: &LinearImage, view: &View) -> Vec<Vec<f32>> {
         out
     };
     (0..if grey { 1 } else { 3 }).map(plane).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    /// Against sums over all texels, each weighed by its overlap with the pixel; one plane only where the image is grey.
+    #[test]
+    fn pixels_are_means_of_texels() {
+        let source = [7usize, 5];
+        for grey in [true, false] {
+            let texel = |k: usize, c: usize| ((k * 31 + if grey { 0 } else { c * 17 }) % 23) as f32 / 23.0;
+            let rgb = (0..35).map(|k| [0, 1, 2].map(|c| texel(k, c))).collect();
+            let image = LinearImage { width: source[0], height: source[1], rgb };
+            let screen = Screen { width_m: 1.4, height_m: 1.0, albedo: Albedo::Image(Arc::new(image)) };
+            for size in [[7, 5], [3, 2], [20, 14]] {
+                let overlap = |i: usize, d: usize, t: usize| {
+                    let step = source[d] as f64 / size[d] as f64;
+                    let (from, to) = (i as f64 * step, (i + 1) as f64 * step);
+                    (to.min(t as f64 + 1.0) - from.max(t as f64)).max(0.0) / step
+                };
+                let mean = |i: usize, j: usize, c: usize| -> f64 {
+                    let part =
+                        |k: usize| overlap(i, 0, k % 7) * overlap(j, 1, k / 7) * f64::from(texel(k, c));
+                    (0..35).map(part).sum()
+                };
+                let got = on_grid(&screen, &View { size, pixel: Pixel::Area, skip: true });
+                assert_eq!(got.is_grey(), grey);
+                for k in 0..size[0] * size[1] {
+                    for c in 0..3 {
+                        let (got, expected) = (f64::from(got.at(c, k)), mean(k % size[0], k / size[0], c));
+                        assert!((got - expected).abs() < 1e-7, "{size:?} pixel {k}: {got}, not {expected}");
+                    }
+                }
+                let centre = on_grid(&screen, &View { size, pixel: Pixel::Centre, skip: true });
+                let middle = |k: usize, n: usize, of: usize| (2 * k + 1) * of / (2 * n);
+                for k in 0..size[0] * size[1] {
+                    let (i, j) = (middle(k % size[0], size[0], 7), middle(k / size[0], size[1], 5));
+                    assert_eq!(centre.at(1, k), texel(j * 7 + i, 1), "{size:?} pixel {k}");
+                }
+            }
+        }
+    }
 }

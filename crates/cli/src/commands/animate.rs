@@ -6,8 +6,9 @@ use std::time::Instant;
 use anyhow::Result;
 use kelir_render::exposure::Rule;
 use kelir_render::film::{Film, Format, Run};
+use kelir_render::folder::Folder;
 use kelir_render::job::{self, Output};
-use kelir_render::{Stats, file};
+use kelir_render::{Meter, Stats, file};
 use serde::Serialize;
 use serde_json::json;
 
@@ -34,14 +35,18 @@ const OTHER_FILMS: [&str; 9] = ["gif", "png", "webp", "webm", "mov", "mkv", "avi
 
 /// Where the frames go.
 enum Target {
-    Folder { names: Vec<String> },
+    Folder { folder: Folder, names: Vec<String> },
     Film(Film),
 }
 
 impl Target {
     fn new(output: &Path, run: Run) -> Result<Self> {
         let ending = output.extension().and_then(|end| end.to_str()).unwrap_or_default().to_ascii_lowercase();
-        let film = |format| Ok(Self::Film(Film::new(format, run).map_err(render_error)?));
+        let film = |format| {
+            let film = Film::new(format, run).map_err(render_error)?;
+            file::try_writing(output)?;
+            Ok(Self::Film(film))
+        };
         match ending.as_str() {
             "mp4" => film(Format::Mp4),
             "apng" => film(Format::Apng),
@@ -49,21 +54,25 @@ impl Target {
                 "output = {}: a folder, or a name that ends in .apng or .mp4",
                 output.display()
             ))),
-            _ => Ok(Self::Folder { names: Vec::new() }),
+            _ if output.as_os_str().is_empty() || output.as_os_str() == "-" => Err(bad_input(format!(
+                "output = {:?}: name a folder, FILE.apng or FILE.mp4; nothing is written to standard output",
+                output.display().to_string()
+            ))),
+            _ => Ok(Self::Folder { folder: Folder::begin(output)?, names: Vec::new() }),
         }
     }
 
     /// Adds the frame that was drawn last; `repeated` says that it equals the one before.
-    fn frame(&mut self, output: &Path, drawing: &job::Drawing<'_>, repeated: bool) -> Result<()> {
+    fn frame(&mut self, drawing: &job::Drawing<'_>, repeated: bool) -> Result<()> {
         match self {
             Self::Film(film) => film.frame(drawing.codes()).map_err(render_error)?,
-            Self::Folder { names } => {
+            Self::Folder { folder, names } => {
                 let name = match names.last() {
                     Some(last) if repeated => last.clone(),
                     _ => {
                         let name = format!("frame-{:04}.png", names.len());
                         let file = drawing.file().map_err(render_error)?;
-                        file::write_atomic(&output.join(&name), &file.bytes)?;
+                        folder.add(&name, &file.bytes)?;
                         name
                     }
                 };
@@ -72,6 +81,12 @@ impl Target {
         }
         Ok(())
     }
+}
+
+/// Whether a file of an older run's folder was a frame.
+fn is_frame(name: &str) -> bool {
+    let number = name.strip_prefix("frame-").and_then(|rest| rest.strip_suffix(".png"));
+    number.is_some_and(|number| number.len() >= 4 && number.bytes().all(|digit| digit.is_ascii_digit()))
 }
 
 /// Runs the command.
@@ -85,13 +100,14 @@ pub(crate) fn run(args: Args) -> Result<()> {
     let mut target = Target::new(&args.output, run)?;
 
     let begun = Instant::now();
-    let mut drawing = job::Drawing::open(&mut job).map_err(render_error)?;
+    let mut drawing = progress::watch(&Meter::default(), "exposure", || job::Drawing::open(&mut job))
+        .map_err(render_error)?;
     let white = drawing.white();
     let bar = progress::bar(run.frames as u64, "frames");
     let mut stats: Vec<Stats> = Vec::new();
     for frame in 0..run.frames {
         let drawn = drawing.frame(frame).map_err(render_error)?;
-        target.frame(&args.output, &drawing, drawn.repeated)?;
+        target.frame(&drawing, drawn.repeated)?;
         if !drawn.repeated {
             stats.push(drawn.stats);
         }
@@ -100,16 +116,13 @@ pub(crate) fn run(args: Args) -> Result<()> {
     bar.finish_and_clear();
     match target {
         Target::Film(film) => file::write_atomic(&args.output, &film.finish().map_err(render_error)?)?,
-        Target::Folder { names } => {
+        Target::Folder { folder, names } => {
             let manifest = json!({
                 "fps": run.fps, "loop": run.repeat, "width": size[0], "height": size[1],
                 "exposure": exposure, "white": white, "frames": names,
             });
-            // The manifest comes last: a folder that has one is whole.
-            file::write_atomic(
-                &args.output.join("manifest.json"),
-                serde_json::to_string_pretty(&manifest)?.as_bytes(),
-            )?;
+            let manifest = serde_json::to_string_pretty(&manifest)?;
+            folder.finish("manifest.json", manifest.as_bytes(), is_frame)?;
         }
     }
     args.told.tell(&Report {

@@ -37,7 +37,7 @@ impl Checked {
         if self.json {
             return Ok(());
         }
-        let verdict = if warnings.is_empty() { "good" } else { "can be served, but see below" };
+        let verdict = if warnings.is_empty() { "good" } else { "good, but see below" };
         print(&format!("{file}: {verdict} ({details})"))?;
         warnings.iter().try_for_each(|warning| print(&format!("warning: {warning}")))
     }

@@ -8,13 +8,15 @@ use clap::builder::PossibleValuesParser;
 use kelir_house::shipped;
 use kelir_render::exposure::Rule;
 use kelir_render::job::{Job, Output};
-use kelir_render::{Backend, Pixel, RenderError, Technique, View};
+use kelir_render::subject::check_view;
+use kelir_render::{Backend, Meter, Pixel, RenderError, Technique, View};
 use kelir_scene::{Scene, Theatre};
 use serde::Serialize;
 
 use super::knobs::Turned;
 use crate::bad_input;
 use crate::output::print_json;
+use crate::progress;
 
 /// What to draw and how.
 #[derive(clap::Args)]
@@ -94,10 +96,13 @@ impl From<ExposureName> for Rule {
 impl Drawing {
     /// What is asked of the renderer, as a study would ask it.
     pub(crate) fn job(&self, output: Output, exposure: ExposureName, time_s: Option<f64>) -> Result<Job> {
-        let scene = self.load()?;
+        let scene = progress::watch(&Meter::default(), "reading the scene", || self.load())?;
+        for warning in scene.warnings() {
+            eprintln!("warning: {warning}");
+        }
         Ok(Job {
             technique: self.technique()?,
-            view: self.view(&scene.still()),
+            view: self.view(&scene.still())?,
             scene,
             backend: self.backend,
             camera: None,
@@ -118,15 +123,17 @@ impl Drawing {
         shipped::scene(&self.scene).map_err(bad_input)
     }
 
-    /// The image asked for.
-    pub(crate) fn view(&self, theatre: &Theatre) -> View {
+    /// The image asked for. Errors: a size that can't be drawn.
+    pub(crate) fn view(&self, theatre: &Theatre) -> Result<View> {
         let pixel = match self.pixel {
             PixelName::Area => Pixel::Area,
             PixelName::Centre => Pixel::Centre,
         };
         let aspect = theatre.screen.height_m / theatre.screen.width_m;
         let size = self.size.unwrap_or_else(|| [1920, (1920.0 * aspect).round() as usize]);
-        View { size, pixel, skip: !self.no_skip }
+        let view = View { size, pixel, skip: !self.no_skip };
+        check_view(theatre, &view).map_err(render_error)?;
+        Ok(view)
     }
 }
 

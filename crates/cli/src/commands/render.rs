@@ -39,22 +39,25 @@ enum Container {
 
 /// Runs the command.
 pub(crate) fn run(args: Args) -> Result<()> {
-    let container = match args.output.extension().and_then(|end| end.to_str()) {
-        Some("png") => Container::Png,
-        Some("exr") => Container::Exr,
-        _ => {
-            return Err(bad_input(format!(
-                "output = {}: the name ends in .png or .exr",
-                args.output.display()
-            )));
-        }
-    };
+    let container =
+        match args.output.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("png") => Container::Png,
+            Some("exr") => Container::Exr,
+            _ => {
+                return Err(bad_input(format!(
+                    "output = {}: the name ends in .png or .exr",
+                    args.output.display()
+                )));
+            }
+        };
     let mut job = args.drawing.job(Output::Still, args.exposure, args.time)?;
     let (technique, size, exposure) = (job.technique.clone(), job.view.size, job.exposure);
     let scene_sha256 = job.scene.sha256().to_owned();
 
     let begun = Instant::now();
-    let mut drawing = job::Drawing::open(&mut job).map_err(render_error)?;
+    file::try_writing(&args.output)?;
+    let mut drawing = progress::watch(&Meter::default(), "exposure", || job::Drawing::open(&mut job))
+        .map_err(render_error)?;
     let white = drawing.white();
     let attributes = Attributes {
         white,

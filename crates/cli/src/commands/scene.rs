@@ -44,9 +44,12 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
     let mut checked = Checked::new(json);
     for file in files {
         match shipped::scene(file) {
-            Ok(scene) => {
-                checked.good(file, &describe(&scene), json!(Described::of(&name(file), "", &scene)), &[])?
-            }
+            Ok(scene) => checked.good(
+                file,
+                &describe(&scene),
+                json!(Described::of(&name(file), "", &scene)),
+                scene.warnings(),
+            )?,
             Err(SceneRefused::Unknown(rule)) => checked.unreadable(file, rule),
             Err(SceneRefused::Wrong(errors)) => {
                 checked.wrong(file, &errors);

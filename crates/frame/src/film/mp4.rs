@@ -8,11 +8,14 @@ use openh264::encoder::{
 };
 use openh264::formats::{RgbSliceU8, YUVBuffer};
 
-use super::{Run, Shared, Sink, failed, rgb, take};
+use super::{Run, Shared, Sink, boxes, failed, rgb, take};
 use crate::RenderError;
 
 /// Quantiser of the MP4, 0 (finest) to 51: at 14 the screens' slow gradients show no bands.
 const QUANTISER: u8 = 14;
+
+/// What its colours are, by the numbers of ITU-T H.273: BT.709's primaries, sRGB's transfer, BT.601's matrix.
+const COLOURS: [u16; 3] = [1, 13, 6];
 
 pub(super) struct Mp4 {
     encoder: Encoder,
@@ -76,6 +79,13 @@ impl Mp4 {
     }
 
     pub(super) fn finish(self) -> Result<Vec<u8>, RenderError> {
-        self.muxer.finish().map_err(failed("mp4")).map(|()| take(&self.bytes))
+        self.muxer.finish().map_err(failed("mp4"))?;
+        let mut bytes = take(&self.bytes);
+        let told = boxes::say_colours(&mut bytes, COLOURS).and_then(|()| match self.written {
+            // How long a frame is shown the library sees at the next.
+            1 => boxes::last(&mut bytes, 1.0 / self.run.fps),
+            _ => Some(()),
+        });
+        told.map(|()| bytes).ok_or_else(|| RenderError::Encode("mp4: a box is not where it belongs".into()))
     }
 }

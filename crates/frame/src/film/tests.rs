@@ -110,6 +110,45 @@ fn an_mp4_holds_every_frame_at_its_time() {
     assert!((f64::from(duration) / f64::from(timescale) - 5.0 / 30.0).abs() < 1e-3, "{duration}/{timescale}");
 }
 
+/// The boxes that say how a film's colours are to be shown stand with its description, and moved no picture.
+#[test]
+fn an_mp4_says_its_colours() {
+    let bytes = film(Format::Mp4, &pictures(), 30.0);
+    let (description, inside) = boxes(&bytes, b"avc1")[0].clone();
+    let (at, colours) = boxes(&bytes, b"colr")[0].clone();
+    assert_eq!(colours, *b"nclx\0\x01\0\x0d\0\x06\0");
+    assert!(description < at && at < description + inside.len(), "within the description");
+    // Every box ends where its parent does or its neighbour begins, so the sizes add up to the file.
+    let tops = [b"ftyp", b"moov", b"mdat"].map(|name| boxes(&bytes, name)[0].1.len() + 8);
+    assert_eq!(tops.iter().sum::<usize>(), bytes.len());
+    let (data, _) = boxes(&bytes, b"mdat")[0];
+    assert_eq!(
+        number(&boxes(&bytes, b"stco")[0].1, 8) as usize,
+        data + 4,
+        "the pictures begin where they did"
+    );
+}
+
+/// One frame is shown as long as one of several.
+#[test]
+fn a_film_of_one_frame_lasts_as_long_as_it() {
+    for fps in [0.5, 25.0] {
+        let bytes = film(Format::Mp4, &pictures()[..1], fps);
+        let of = |name: &[u8; 4], units: usize, time: usize| {
+            let payload = boxes(&bytes, name)[0].1.clone();
+            f64::from(number(&payload, time)) / f64::from(number(&payload, units))
+        };
+        for lasts in [of(b"mvhd", 12, 16), of(b"mdhd", 12, 16)] {
+            assert!((lasts * fps - 1.0).abs() < 1e-3, "{lasts} s at {fps} Hz");
+        }
+        let [movie, track] =
+            [(b"mvhd", 16), (b"tkhd", 20)].map(|(name, at)| number(&boxes(&bytes, name)[0].1, at));
+        assert_eq!(movie, track);
+        let times = boxes(&bytes, b"stts")[0].1.clone();
+        assert_eq!([4, 8, 12].map(|at| number(&times, at)), [1, 1, (90_000.0 / fps) as u32]);
+    }
+}
+
 #[test]
 fn an_mp4_looks_like_its_frames() {
     let good = quality(&pictures());
@@ -131,6 +170,9 @@ fn what_a_film_cannot_be_is_said() {
     assert!(refused(Format::Apng, SIZE, 0.0, 2).contains("fps = 0"));
     assert!(refused(Format::Apng, SIZE, f64::NAN, 2).contains("fps"));
     assert!(refused(Format::Mp4, [8, 8], 30.0, 2).contains("16x16"));
+    for size in [[3842, 2160], [3840, 2162], [2400, 2400]] {
+        assert!(refused(Format::Mp4, size, 30.0, 2).contains("at most 3840x2160"), "{size:?}");
+    }
     assert!(refused(Format::Mp4, SIZE, 30.0, 0).contains("frames"));
     let short = Film::new(Format::Apng, Run { size: SIZE, fps: 30.0, frames: 2, repeat: true }).unwrap();
     assert!(short.finish().is_err(), "a film with frames missing is no film");

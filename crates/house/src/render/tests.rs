@@ -8,14 +8,13 @@ use std::sync::LazyLock;
 
 /// A still and a film of one scene under two techniques.
 static STUDY: LazyLock<String> = LazyLock::new(|| {
-    let block = |id: &str, item: &str, keys: &str| {
+    let block = |id: &str, item: &str, kind: &str| {
         let items = fixtures::items([item], "../scenes/lamp.toml");
-        fixtures::block(id, &format!("conditions = [\"pa\", \"pcss\"]\n{items}{keys}"))
+        fixtures::block(id, &[("kind", kind), ("conditions", "[\"pa\", \"pcss\"]"), ("items", &items)])
     };
-    let conditions =
-        "[conditions.pa]\ntechnique = \"pa\"\n[conditions.pcss]\ntechnique = \"pcss\"\nbias_m = 0\n";
-    let blocks = [block("stills", "a", ""), block("loop", "b", "kind = \"animation\"")];
-    fixtures::study(&format!("seed = 3\n{conditions}"), blocks)
+    let conditions = r#"{ pa = { technique = "pa" }, pcss = { technique = "pcss", bias_m = 0 } }"#;
+    let blocks = [block("stills", "a", "\"still\""), block("loop", "b", "\"animation\"")];
+    fixtures::study(&[("seed", "3"), ("conditions", conditions)], blocks)
 });
 
 /// The lamp moves.
@@ -74,11 +73,11 @@ fn the_key_is_the_jobs() {
 #[test]
 fn what_a_study_leaves_out_is_its_default() {
     let written = STUDY
-        .replace("technique = \"pa\"", "technique = \"pa\"\nsplit = 1\nweights = \"area\"")
-        .replace("bias_m = 0", "bias_m = -0.0\nseed = 1");
+        .replace("technique = \"pa\"", "technique = \"pa\", split = 1, weights = \"area\"")
+        .replace("bias_m = 0", "bias_m = -0.0, seed = 1");
     assert_eq!(identities(&written), identities(&STUDY));
     // Negative controls.
-    let other = identities(&STUDY.replace("technique = \"pa\"", "technique = \"pa\"\nsplit = 2"));
+    let other = identities(&STUDY.replace("technique = \"pa\"", "technique = \"pa\", split = 2"));
     let same: Vec<bool> = identities(&STUDY).iter().zip(&other).map(|(a, b)| a == b).collect();
     assert_eq!(same, [false, true, false, true]);
     let sizes = identities(&STUDY.replace("[64, 36]", "[80, 45]"));
@@ -114,7 +113,7 @@ fn a_scene_that_changes_meanwhile_is_refused() {
 /// A photograph at a larger size is the same photograph: its blur is as wide in the scene, and its noise has the same power there.
 #[test]
 fn a_camera_sees_alike_at_each_size() {
-    let camera = "technique = \"pa\"\ncamera = { defocus_px = 0.8, noise = 0.012, seed = 7 }";
+    let camera = "technique = \"pa\", camera = { defocus_px = 0.8, noise = 0.012, seed = 7 }";
     let study = STUDY
         .replace("size = [64, 36]\n", "")
         .replacen("[texts]", "[display]\nsizes = [[64, 36], [160, 90]]\n[texts]", 1)

@@ -6,6 +6,9 @@ use super::{Blob, Job, Output};
 use crate::subject::{Staged, Subject};
 use crate::{Frame, Meter, RenderError, Renderer, Stats, encode};
 
+/// What may be shown as white: images are f32, which keeps seven digits of a shadow 1e-7 times as bright.
+const WHITE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+
 /// A job being drawn, frame by frame; it keeps what it built between frames.
 pub struct Drawing<'j, S: Staged = Scene> {
     pub(super) job: &'j mut Job<S>,
@@ -32,11 +35,18 @@ impl<'j, S: Staged> Drawing<'j, S> {
     /// Opens the renderer and sets the exposure. Errors: as [`Job::check`]; an animation of a scene without a timeline, an impossible
     /// view, no adapter.
     pub fn open(job: &'j mut Job<S>) -> Result<Self, RenderError> {
-        job.check()?;
-        job.frames()?;
+        job.possible()?;
         let renderer = S::renderer(&job.technique, job.backend)?;
-        job.view.check(job.scene.still().sides_m())?;
         let white = job.scene.white(job.exposure, &job.view, job.time_s);
+        if !WHITE.contains(&white) {
+            return Err(RenderError::View(format!(
+                "{}: what would be shown as white has a radiance of {white:e}; images can hold from {:e} to {:e}: give the lamp, or \
+                 exposure.white, a radiance nearer to 1",
+                job.scene.label(),
+                WHITE.start(),
+                WHITE.end()
+            )));
+        }
         let codes = vec![0; job.view.size[0] * job.view.size[1]];
         Ok(Self { job, renderer, white, codes, last: None, kept: S::Kept::default() })
     }
@@ -79,16 +89,18 @@ impl<'j, S: Staged> Drawing<'j, S> {
         }
         self.last = None;
         let (view, camera) = (self.job.view, self.job.camera);
+        let (label, technique) = (self.job.scene.label(), self.job.technique.name());
         // Display codes alone would not say how sure the ground truth is of them.
         let drawn = if camera.is_some() || self.job.technique.is_truth() {
-            let mut frame = self.renderer.radiance(&subject, &view)?;
+            let mut frame = self.renderer.radiance(&subject, &view).map_err(|e| e.of(label, technique))?;
             self.codes = match camera {
                 Some(camera) => camera.expose(&frame, self.white)?,
                 None => encode::display(&frame, self.white),
             };
             Drawn { stats: std::mem::take(&mut frame.stats), linear: Some(frame), repeated: false }
         } else {
-            let stats = self.renderer.display(&subject, &view, self.white, &mut self.codes)?;
+            let stats = self.renderer.display(&subject, &view, self.white, &mut self.codes);
+            let stats = stats.map_err(|e| e.of(label, technique))?;
             Drawn { stats, ..Drawn::default() }
         };
         self.last = Some(subject);
@@ -117,6 +129,7 @@ impl<'j, S: Staged> Drawing<'j, S> {
     /// Frame `index` in linear light, with all layers; before any camera.
     pub fn radiance(&mut self, index: usize) -> Result<Frame, RenderError> {
         let subject = self.subject(index);
-        self.renderer.radiance(&subject, &self.job.view)
+        let frame = self.renderer.radiance(&subject, &self.job.view);
+        frame.map_err(|e| e.of(self.job.scene.label(), self.job.technique.name()))
     }
 }

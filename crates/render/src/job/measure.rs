@@ -107,7 +107,9 @@ pub(super) fn measure<S: Staged>(
     for (k, frame) in frames.iter().enumerate() {
         progress(k);
         let subject = drawing.subject(*frame);
-        let (ours, theirs) = (drawing.radiance(*frame)?, truth.radiance(&subject, &view)?);
+        let theirs = truth.radiance(&subject, &view);
+        let theirs = theirs.map_err(|e| e.of(drawing.job.scene.label(), reference.name()))?;
+        let ours = drawing.radiance(*frame)?;
         comparison.full_scale = comparison.full_scale.max(subject.brightest(&view));
         comparison.add(&ours, &theirs, &subject.albedo(&view), &subject.penumbra(&view));
     }

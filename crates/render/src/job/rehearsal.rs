@@ -16,18 +16,11 @@ const FRAMES: usize = 48;
 ///
 /// Errors: as [`super::run`].
 pub fn rehearse<S: Staged>(mut job: Job<S>) -> (S, Result<(), RenderError>) {
-    let drawn = possible(&job).and_then(|frames| {
+    let drawn = job.possible().and_then(|frames| {
         shrink(&mut job);
         draw(&mut job, frames)
     });
     (job.scene, drawn)
-}
-
-/// How many frames the job has, if its settings and its view at full size are possible.
-fn possible<S: Staged>(job: &Job<S>) -> Result<usize, RenderError> {
-    job.check()?;
-    job.view.check(job.scene.still().sides_m())?;
-    job.frames()
 }
 
 fn shrink<S: Staged>(job: &mut Job<S>) {

@@ -4,6 +4,7 @@ mod card;
 
 use std::collections::BTreeMap;
 
+use kelir_fixtures as fixtures;
 use kelir_scene::{Assets, Masks};
 
 use super::*;
@@ -20,41 +21,11 @@ impl Assets for Files {
     }
 }
 
-const FIGURE: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 60" width="40" height="60">
-<path d="M5 5 H35 L30 55 H10 Z M15 15 H25 V25 H15 Z" fill-rule="evenodd" fill="#000"/></svg>"##;
-
 fn job(timeline: &str, technique: Technique, output: Output) -> Job {
-    let toml = format!(
-        r#"
-[screen]
-width_m = 1.6
-height_m = 0.9
-albedo = [0.8, 0.7, 0.5]
-[lamp]
-position_m = [0.0, 0.0, -1.5]
-[[lamp.emitters]]
-name = "inner"
-shape = "rectangle"
-size_m = [0.02, 0.02]
-radiance = 2000.0
-[[lamp.emitters]]
-name = "outer"
-shape = "rectangle"
-size_m = [0.1, 0.1]
-radiance = 40.0
-[ambient]
-model = "none"
-[[puppets]]
-image = "figure.svg"
-height_m = 0.5
-position_m = [0.0, 0.0, -0.3]
-texels = 128
-{timeline}
-"#
-    );
-    let files = Files([("figure.svg".to_owned(), FIGURE.as_bytes().to_vec())].into());
+    let toml = format!("{}{timeline}", fixtures::SCENE);
+    let files = Files([("puppets/square.svg".to_owned(), fixtures::SQUARE.as_bytes().to_vec())].into());
     Job {
-        scene: Scene::parse("scene.toml", &toml, &files).unwrap(),
+        scene: Scene::parse("scenes/scene.toml", &toml, &files).unwrap(),
         technique,
         view: View { size: [96, 54], pixel: Pixel::Area, skip: true },
         backend: Backend::Cpu,

@@ -39,7 +39,7 @@ impl Technique {
     /// The revision that stands in a job's key.
     pub fn revision(&self) -> u32 {
         match self {
-            Self::Pa(_) => pa::REVISION,
+            Self::Pa(knobs) => knobs.revision(),
             Self::Mc(_) => mc::REVISION,
             Self::Points(_) => points::REVISION,
             Self::Pcss(_) => pcss::REVISION,

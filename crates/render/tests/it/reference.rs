@@ -134,7 +134,7 @@ fn page(given: &BTreeMap<&str, Given>) -> String {
          ## Knobs\n\n\
          As keys of a study's `[conditions.NAME]`, as `--knob NAME=VALUE` or an option of that name; `kelir technique NAME` prints them.\n\n{}\n\
          ## Channels of an `.exr`\n\n\
-         All are f32, rows from top to bottom. E stands for an emitter's name (`dome` for the dome), C for R, G or B.\n\n\
+         All are f32, in scan lines from the top. E stands for an emitter's name (`dome` for the dome), C for R, G or B.\n\n\
          | channel | unit | what it is |\n|---|---|---|\n{}\n\n\
          | technique | channels |\n|---|---|\n{}\n\n\
          Attributes: `white` (the radiance that a display shows as white), `exposure` (what that is the brightest of: `still` or `timeline`), `technique`\n\

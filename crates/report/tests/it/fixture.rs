@@ -140,22 +140,21 @@ impl Study {
         let quoted = |text: &str| serde_json::to_string(&plain(text)).unwrap();
         let photo =
             if self.blocks.contains("\"photo\"") { ", photo = { technique = \"mc\", spp = 4 }" } else { "" };
-        let equivalence = match self.within.as_str() {
-            "" => String::new(),
-            within => {
-                format!("\nequivalence = {{ within = {within}, reason = \"Less would change nothing.\" }}")
-            }
-        };
-        let head = format!(
-            "title = {}\nquestion = {}\nseed = 11\n\
-             conditions = {{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}\n\
-             screening = {{ {} }}{}",
-            quoted(&self.title),
-            quoted(&self.question),
-            self.screening,
-            equivalence
-        );
-        let toml = fixtures::study(&head, [self.blocks.replace("TITLE", &quoted(&self.block_title))]);
+        let (title, question) = (quoted(&self.title), quoted(&self.question));
+        let conditions = format!("{{ pa = {{ technique = \"pa\" }}, mc = {{ technique = \"mc\" }}{photo} }}");
+        let screening = format!("{{ {} }}", self.screening);
+        let within = format!("{{ within = {}, reason = \"Less would change nothing.\" }}", self.within);
+        let mut keys = vec![
+            ("title", &*title),
+            ("question", &question),
+            ("seed", "11"),
+            ("conditions", &conditions),
+            ("screening", &screening),
+        ];
+        if !self.within.is_empty() {
+            keys.push(("equivalence", &within));
+        }
+        let toml = fixtures::study(&keys, [self.blocks.replace("TITLE", &quoted(&self.block_title))]);
         let mut design =
             StudyDefinition::parse("studies/shadows.toml", &toml).unwrap_or_else(|e| panic!("{e}"));
         (design.title, design.question) = (self.title.clone(), self.question.clone());

@@ -1,105 +1,114 @@
-//! PNG and JPEG, decoded after their size is known to be bearable.
+//! Scans: PNG and JPEG as puppets.
 
-use std::io::Cursor;
+use std::ops::Bound::Excluded;
 
-use image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use image::DynamicImage;
+use kelir_reader::Node;
 
-use super::grid::{Lattice, Rect, Texture};
-use crate::colour::{srgb_to_linear, srgb8_to_linear};
-use crate::limits;
+use super::grid::{Lattice, Texture};
+use crate::picture::Picture;
 
-/// Decodes a PNG or JPEG, or says which rule it breaks. The size is checked before any pixel is decoded.
-pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
-    let format = match image::guess_format(bytes) {
-        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
-        _ => return Err("is not a PNG or JPEG file".to_owned()),
-    };
-    let most = limits::IMAGE_SIDE;
-    let reader = || {
-        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-        let mut allowed = Limits::default();
-        // RGBA in 16 bits of the largest image, and as much again for the decoder.
-        allowed.max_alloc = Some((most * most * 16) as u64);
-        reader.limits(allowed);
-        reader
-    };
-    let unreadable = |e: image::ImageError| format!("can't be decoded: {e}");
-    let (width, height) = reader().into_dimensions().map_err(unreadable)?;
-    if width == 0 || height == 0 {
-        return Err("has no pixels".to_owned());
-    }
-    if width as usize > most || height as usize > most {
-        return Err(format!("is {width} × {height} pixels; an image has at most {most} a side"));
-    }
-    reader().decode().map_err(unreadable)
+/// What a picture without alpha is opaque by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum AlphaFrom {
+    /// As opaque as it is dark.
+    Luminance,
+    /// Opaque where its luminance is below this, else clear.
+    Below(f64),
 }
 
-/// A scanned puppet.
-pub(crate) struct Bitmap {
-    image: DynamicImage,
-}
-
-impl Bitmap {
-    pub(crate) fn open(bytes: &[u8]) -> Result<Self, String> {
-        let image = match decode(bytes)? {
-            // What has few colours or none becomes RGBA; 16-bit images keep their depth.
-            image @ (DynamicImage::ImageRgba8(_) | DynamicImage::ImageRgba16(_)) => image,
-            DynamicImage::ImageRgb16(_) | DynamicImage::ImageLuma16(_) | DynamicImage::ImageLumaA16(_) => {
-                return Self::open_deep(bytes);
-            }
-            image => DynamicImage::ImageRgba8(image.into_rgba8()),
-        };
-        Ok(Self { image })
+impl AlphaFrom {
+    pub(crate) fn read(node: &Node) -> Option<Self> {
+        if node.as_str().is_some() {
+            return node.choice(&[("luminance", Self::Luminance)]);
+        }
+        let rule = "is \"luminance\", or the luminance, above 0 and below 1, under which a pixel is opaque";
+        node.number_in((Excluded(0.0), Excluded(1.0)), rule).map(Self::Below)
     }
 
-    fn open_deep(bytes: &[u8]) -> Result<Self, String> {
-        Ok(Self { image: DynamicImage::ImageRgba16(decode(bytes)?.into_rgba16()) })
-    }
-
-    /// [columns, rows].
-    pub(crate) fn size(&self) -> [usize; 2] {
-        [self.image.width() as usize, self.image.height() as usize]
-    }
-
-    /// Opacities α(1 − T) on the lattice: copied where it is the image's own, else the mean over each texel's area.
-    pub(crate) fn texture(&self, lattice: &Lattice, translucent: bool) -> Texture {
-        let [width, height] = self.size();
-        let within = Rect::of_size(lattice.columns, lattice.rows);
-        match &self.image {
-            DynamicImage::ImageRgba16(image) => {
-                let linear: Vec<f32> = if translucent {
-                    (0..=u16::MAX).map(|c| srgb_to_linear(f64::from(c) / 65535.0) as f32).collect()
-                } else {
-                    vec![0.0; 1 << 16]
-                };
-                let pixel = |x: usize, y: usize| {
-                    let [r, g, b, a] = image.get_pixel(x as u32, y as u32).0;
-                    let alpha = f32::from(a) / 65535.0;
-                    [r, g, b].map(|c| alpha * (1.0 - linear[c as usize]))
-                };
-                sample(width, height, lattice, within, pixel)
-            }
-            DynamicImage::ImageRgba8(image) => {
-                let linear = if translucent { *srgb8_to_linear() } else { [0.0; 256] };
-                let pixel = |x: usize, y: usize| {
-                    let [r, g, b, a] = image.get_pixel(x as u32, y as u32).0;
-                    let alpha = f32::from(a) / 255.0;
-                    [r, g, b].map(|c| alpha * (1.0 - linear[c as usize]))
-                };
-                sample(width, height, lattice, within, pixel)
-            }
-            _ => unreachable!("a bitmap is RGBA"),
+    /// The share of a pixel's alpha that is left, by its linear colour (luminance as in BT.709).
+    fn share(self, [r, g, b]: [f32; 3]) -> f32 {
+        let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+        match self {
+            Self::Luminance => (1.0 - luminance).clamp(0.0, 1.0),
+            Self::Below(threshold) => f32::from(u8::from(f64::from(luminance) < threshold)),
         }
     }
 }
 
+/// A scanned puppet.
+pub(crate) struct Bitmap {
+    /// RGBA in 8 or 16 bits.
+    picture: Picture,
+}
+
+impl Bitmap {
+    pub(crate) fn open(bytes: &[u8]) -> Result<Self, String> {
+        let mut picture = Picture::decode(bytes)?;
+        // What has few colours or none becomes RGBA; 16-bit images keep their depth.
+        picture.image = match picture.image {
+            image @ (DynamicImage::ImageRgba16(_)
+            | DynamicImage::ImageRgb16(_)
+            | DynamicImage::ImageLuma16(_)
+            | DynamicImage::ImageLumaA16(_)) => DynamicImage::ImageRgba16(image.into_rgba16()),
+            image => DynamicImage::ImageRgba8(image.into_rgba8()),
+        };
+        Ok(Self { picture })
+    }
+
+    /// [columns, rows].
+    pub(crate) fn size(&self) -> [usize; 2] {
+        [self.picture.image.width() as usize, self.picture.image.height() as usize]
+    }
+
+    /// Whether no pixel lets anything through by its alpha.
+    pub(crate) fn is_opaque(&self) -> bool {
+        match &self.picture.image {
+            DynamicImage::ImageRgba16(image) => image.pixels().all(|p| p.0[3] == u16::MAX),
+            DynamicImage::ImageRgba8(image) => image.pixels().all(|p| p.0[3] == u8::MAX),
+            _ => unreachable!("a bitmap is RGBA"),
+        }
+    }
+
+    /// Opacities α(1 − T) on the lattice: copied where it is the image's own, else the mean over each texel's area. Errors: its colours matter, and
+    /// it says something of them that can't be applied.
+    pub(crate) fn texture(
+        &self,
+        lattice: &Lattice,
+        translucent: bool,
+        alpha_from: Option<AlphaFrom>,
+    ) -> Result<Texture, String> {
+        let codes = if matches!(self.picture.image, DynamicImage::ImageRgba16(_)) { 1 << 16 } else { 1 << 8 };
+        let linear = match translucent || alpha_from.is_some() {
+            true => self.picture.linear(codes)?,
+            false => vec![0.0; codes],
+        };
+        let opacity = |rgb: [usize; 3], alpha: f32| {
+            let light = rgb.map(|c| linear[c]);
+            let alpha = alpha_from.map_or(alpha, |from| alpha * from.share(light));
+            if translucent { light.map(|l| alpha * (1.0 - l)) } else { [alpha; 3] }
+        };
+        let size = self.size();
+        Ok(match &self.picture.image {
+            DynamicImage::ImageRgba16(image) => sample(size, lattice, |x, y| {
+                let [r, g, b, a] = image.get_pixel(x as u32, y as u32).0;
+                opacity([r, g, b].map(usize::from), f32::from(a) / 65535.0)
+            }),
+            DynamicImage::ImageRgba8(image) => sample(size, lattice, |x, y| {
+                let [r, g, b, a] = image.get_pixel(x as u32, y as u32).0;
+                opacity([r, g, b].map(usize::from), f32::from(a) / 255.0)
+            }),
+            _ => unreachable!("a bitmap is RGBA"),
+        })
+    }
+}
+
 fn sample(
-    width: usize,
-    height: usize,
+    [width, height]: [usize; 2],
     lattice: &Lattice,
-    within: Rect,
     pixel: impl Fn(usize, usize) -> [f32; 3] + Sync,
 ) -> Texture {
+    let within = lattice.rest();
     if [lattice.columns, lattice.rows] == [width, height] {
         return Texture::new(within, |x, y| pixel(x as usize, y as usize));
     }

@@ -23,6 +23,8 @@ pub(crate) struct Figure {
     /// Pivots in lattice coordinates.
     parts: Vec<Joint>,
     textures: Vec<Texture>,
+    /// The same without the drawing's edge, where a part that turns reaches beyond it: once turned, it is drawn whole.
+    whole: Vec<Option<Texture>>,
     channels: usize,
     bits: u32,
     /// Set by [`Figure::settle`]: which parts may move, and the product of those that don't.
@@ -75,25 +77,50 @@ pub(crate) struct Posed {
 }
 
 impl Figure {
-    /// `textures` has one texture a part, in drawing order. A part without a pivot turns about the figure's centre.
+    /// `parts` have their pivots in lattice coordinates; a part without one turns about the figure's centre. `textures` has one texture a part, in
+    /// drawing order, and where a part reaches beyond the drawing the whole of it.
     pub(crate) fn new(
         lattice: Lattice,
-        origin: [f64; 2],
         parts: &[Part],
-        mut textures: Vec<Texture>,
+        textures: Vec<(Texture, Option<Texture>)>,
         bits: u32,
     ) -> Self {
-        let joints = parts.iter().map(|part| Joint {
-            parent: part.parent,
-            pivot: part.pivot.map_or(lattice.centre(), |[x, y]| lattice.at([x - origin[0], y - origin[1]])),
-        });
-        let grey = textures.iter().all(|t| t.lanes == 1);
+        let joints = parts
+            .iter()
+            .map(|part| Joint { parent: part.parent, pivot: part.pivot.unwrap_or(lattice.centre()) });
+        let (mut textures, mut whole): (Vec<Texture>, Vec<Option<Texture>>) = textures.into_iter().unzip();
+        let grey = textures.iter().chain(whole.iter().flatten()).all(|t| t.lanes == 1);
         let channels = if grey { 1 } else { 3 };
         if !grey {
-            textures.iter_mut().for_each(Texture::widen);
+            textures.iter_mut().chain(whole.iter_mut().flatten()).for_each(Texture::widen);
         }
         let moving = vec![true; textures.len()];
-        Self { lattice, parts: joints.collect(), textures, channels, bits, moving, plate: None, rest: None }
+        Self {
+            lattice,
+            parts: joints.collect(),
+            textures,
+            whole,
+            channels,
+            bits,
+            moving,
+            plate: None,
+            rest: None,
+        }
+    }
+
+    /// What is drawn of a part in a pose: all of it once it is turned, else what lies on the drawing.
+    fn texture(&self, part: usize, pose: &Pose) -> &Texture {
+        let turned = |p: usize| pose.parts_deg.get(p).is_some_and(|degrees| degrees.rem_euclid(360.0) != 0.0);
+        match &self.whole[part] {
+            Some(whole) if self.chain(part).any(turned) => whole,
+            _ => &self.textures[part],
+        }
+    }
+
+    fn forget(&mut self, part: usize) {
+        // The bounds are still needed for the extent.
+        self.textures[part].opacity = Vec::new();
+        self.whole[part].iter_mut().for_each(|t| t.opacity = Vec::new());
     }
 
     /// 1 or 3.
@@ -129,7 +156,7 @@ impl Figure {
     pub(crate) fn extent(&self, pose: &Pose) -> Rect {
         let rest = Rect::of_size(self.lattice.columns, self.lattice.rows);
         let parts = (0..self.textures.len())
-            .map(|part| self.motion(part, pose).bounds(self.textures[part].rect))
+            .map(|part| self.motion(part, pose).bounds(self.texture(part, pose).rect))
             .fold(Rect::EMPTY, Rect::union);
         let turned = Rigid::turn([0.0; 2], pose.rotate_deg) != Rigid::IDENTITY;
         if turned && !parts.is_empty() { parts } else { rest.union(parts) }
@@ -148,14 +175,14 @@ impl Figure {
         if !moving.contains(&true) {
             // One mask is all there will be: draw it from the parts, and keep nothing else.
             let rest = self.posed(pose, None);
-            self.textures.iter_mut().for_each(|t| t.opacity = Vec::new());
+            (0..self.textures.len()).for_each(|part| self.forget(part));
             return self.rest.insert(rest).clone();
         }
         self.moving = moving;
         let still: Vec<usize> = (0..self.textures.len()).filter(|&p| !self.moving[p]).collect();
         let placed: Vec<Placed> = still
             .iter()
-            .map(|&p| Placed { texture: &self.textures[p], motion: self.motion(p, pose) })
+            .map(|&p| Placed { texture: self.texture(p, pose), motion: self.motion(p, pose) })
             .collect();
         let rect = placed.iter().map(|p| p.motion.bounds(p.texture.rect)).fold(Rect::EMPTY, Rect::union);
         self.plate = (!rect.is_empty()).then(|| match self.channels {
@@ -163,8 +190,8 @@ impl Figure {
             _ => Still::new::<4>(rect, &placed, self.bits),
         });
         for p in still {
-            // Multiplied into the plate; the bounds are still needed for the extent.
-            self.textures[p].opacity = Vec::new();
+            // Multiplied into the plate.
+            self.forget(p);
         }
         let rest = self.posed(pose, None);
         self.rest.insert(rest).clone()
@@ -197,7 +224,7 @@ impl Figure {
     fn draw<C: Code>(&self, extent: Rect, pose: &Pose, mut codes: Vec<C>) -> Vec<C> {
         let parts: Vec<Placed> = (0..self.textures.len())
             .filter(|&p| self.moving[p])
-            .map(|p| Placed { texture: &self.textures[p], motion: self.motion(p, pose) })
+            .map(|p| Placed { texture: self.texture(p, pose), motion: self.motion(p, pose) })
             .collect();
         match self.channels {
             1 => compose::<C, 1>(extent, self.plate.as_ref().map(Still::plate), &parts, &mut codes),

@@ -82,6 +82,11 @@ impl Lattice {
         [x * self.scale + self.margin, y * self.scale]
     }
 
+    /// The texels of the drawing.
+    pub(crate) fn rest(&self) -> Rect {
+        Rect::of_size(self.columns, self.rows)
+    }
+
     /// The centre of the drawing and of the rest grid.
     pub(crate) fn centre(&self) -> [f64; 2] {
         [0.5 * self.columns as f64, 0.5 * self.rows as f64]

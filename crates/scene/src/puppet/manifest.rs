@@ -9,7 +9,7 @@ use crate::limits;
 /// A part of a puppet that turns, as its manifest has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Its name: the id of the SVG's group.
+    /// Its name: the id of the SVG's group, or the label that Inkscape shows for it.
     pub id: String,
     /// Index of the part that it hangs on, and is carried along by.
     pub parent: Option<usize>,
@@ -96,11 +96,21 @@ type RawPart<'a> = (String, Option<Node<'a>>, Option<[f64; 2]>, Option<[f64; 2]>
 
 fn read_part<'a>(node: &Node<'a>) -> Option<RawPart<'a>> {
     let mut fields = node.table()?;
-    let id = fields.need("id", "the id of the SVG group", |n| {
+    let id = fields.need("id", "the id of the SVG group, or its Inkscape label", |n| {
         let id = n.string()?;
-        let sound =
-            !id.is_empty() && id.len() <= 100 && id.chars().all(|c| c.is_alphanumeric() || "_-".contains(c));
-        if sound { Some(id.to_owned()) } else { n.refuse("an id has 1 to 100 letters, digits, _ or -") }
+        // Whatever an editor lets a layer be called, but for what no style sheet can quote.
+        let quoted = id.contains('"') && id.contains('\'');
+        let sound = !id.is_empty()
+            && id.len() <= 100
+            && !quoted
+            && !id.contains(|c: char| c.is_control() || c == '\\');
+        if sound {
+            Some(id.to_owned())
+        } else {
+            n.refuse(
+                "an id has 1 to 100 bytes, no control character or backslash, and not both kinds of quotes",
+            )
+        }
     });
     let parent = fields.given("parent", "id of the part that it hangs on; without it on none");
     let pivot = fields.optional(

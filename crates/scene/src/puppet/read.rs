@@ -3,7 +3,7 @@
 use glam::DVec3;
 use kelir_reader::{Node, did_you_mean, list};
 
-use super::bitmap::Bitmap;
+use super::bitmap::{AlphaFrom, Bitmap};
 use super::figure::{Figure, Pose};
 use super::grid::{Lattice, Texture};
 use super::manifest::{Manifest, Part};
@@ -72,9 +72,10 @@ pub(crate) fn find_part(node: &Node, name: &str, parts: &[Part]) -> Option<usize
 /// Reads a puppet; `name` is the scene's path from the root.
 pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<Entry<'a>> {
     let mut fields = node.table()?;
-    let mut image = None;
+    let (mut image, mut image_node) = (None, None);
     let art = fields.need("image", "the path of an SVG, a PNG or a puppet manifest", |n| {
         image = n.as_str().map(str::to_owned);
+        image_node = Some(n.clone());
         open(n, name, loader)
     });
     let height_m = fields.need("height_m", "the puppet's height in metres", length);
@@ -89,6 +90,11 @@ pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<E
         false,
         |n| n.boolean(),
     );
+    let alpha_from = fields.given(
+        "alpha_from",
+        "what a scan without alpha is opaque by: \"luminance\", as dark as it is, or the luminance below which it is; without it its alpha",
+    );
+    let alpha = alpha_from.as_ref().map_or(Some(None), |n| AlphaFrom::read(n).map(Some));
     let rotate_deg =
         fields.optional("rotate_deg", "turn in its plane, counter-clockwise; without it 0", 0.0, degrees);
     let tilt_node = fields.given("tilt_deg", "turn about x, then about y; without it [0, 0]");
@@ -112,8 +118,18 @@ pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<E
     fields.done();
 
     let (art, height_m, translucent, bits) = (art?, height_m?, translucent?, bits?);
+    let image_node = image_node?;
     let lattice = lattice(node, texels.as_ref().unwrap_or(node), &art, rows?)?;
-    let figure = rasterise(node, &art, lattice, translucent, bits)?;
+    let alpha = alpha?;
+    match (&art.drawing, &alpha_from) {
+        (Drawing::Svg(_), Some(node)) => return node.refuse("belongs to a PNG or JPEG: an SVG draws what is opaque"),
+        (Drawing::Bitmap(bitmap), None) if !translucent && bitmap.is_opaque() => image_node.warn(
+            "has no transparent texel and casts the shadow of its rectangle: is this a scan without alpha? alpha_from = \"luminance\" lets \
+             through what is bright, alpha_from = 0.5 what is brighter than that",
+        ),
+        _ => {}
+    }
+    let figure = rasterise(&image_node, &art, lattice, Surface { translucent, alpha, bits })?;
     let setting = Setting {
         position_m: DVec3::from(position_m?),
         tilt_deg: tilt_deg?,
@@ -170,7 +186,9 @@ fn open_image(node: &Node, from: &str, parts: &[String], loader: &Loader) -> Opt
         let mut refuse = |rule: String| {
             node.refuse::<()>(rule);
         };
-        return Svg::open(&bytes, parts, &mut refuse).map(Drawing::Svg);
+        let svg = Svg::open(&bytes, parts, &mut refuse)?;
+        svg.odd.iter().for_each(|odd| node.warn(odd));
+        return Some(Drawing::Svg(svg));
     }
     if path.ends_with(".png") {
         let (_, bytes) = loader.read(from, node, limits::IMAGE_BYTES)?;
@@ -200,7 +218,17 @@ fn lattice(node: &Node, texels: &Node, art: &Art, rows: Option<usize>) -> Option
         return texels.refuse(rule);
     }
     let lattice = Lattice::new(size, rows);
-    let all = lattice.columns * lattice.rows * art.parts.len().max(1);
+    let mut all = lattice.columns * lattice.rows * art.parts.len().max(1);
+    if let Drawing::Svg(svg) = &art.drawing {
+        for part in (0..art.parts.len()).filter(|part| turns(&art.parts, *part)) {
+            let beyond = svg.reach(part, &lattice).map_or(0, |reach| reach.area());
+            if beyond > limits::PART_TEXELS {
+                let id = &art.parts[part].id;
+                return node.refuse(format!("part {id:?} reaches far beyond the drawing's edge, and it turns; cut it off, or let it not turn"));
+            }
+            all = all.saturating_add(beyond);
+        }
+    }
     if all > limits::PART_TEXELS {
         let rule = format!("{} parts of {} × {rows} texels are too many", art.parts.len(), lattice.columns);
         return node
@@ -209,16 +237,49 @@ fn lattice(node: &Node, texels: &Node, art: &Art, rows: Option<usize>) -> Option
     Some(lattice)
 }
 
-fn rasterise(node: &Node, art: &Art, lattice: Lattice, translucent: bool, bits: u32) -> Option<Figure> {
-    let (origin, textures): ([f64; 2], Vec<Texture>) = match &art.drawing {
+/// Whether a pose may turn a part: by its own pivot, or by that of what it hangs on.
+fn turns(parts: &[Part], part: usize) -> bool {
+    std::iter::successors(Some(part), |p| parts.get(*p)?.parent).any(|p| parts[p].pivot.is_some())
+}
+
+/// How a drawing's alpha and colours become texels.
+struct Surface {
+    translucent: bool,
+    alpha: Option<AlphaFrom>,
+    bits: u32,
+}
+
+fn rasterise(image: &Node, art: &Art, lattice: Lattice, surface: Surface) -> Option<Figure> {
+    let Surface { translucent, alpha, bits } = surface;
+    let mut parts = art.parts.clone();
+    let textures: Vec<(Texture, Option<Texture>)> = match &art.drawing {
         Drawing::Svg(svg) => {
-            let parts = 0..art.parts.len().max(1);
-            (svg.origin, parts.map(|part| svg.texture(part, &lattice, translucent)).collect())
+            let pivot = |[x, y]: [f64; 2]| lattice.at(svg.units.pixel([x, y]));
+            parts.iter_mut().for_each(|part| part.pivot = part.pivot.map(pivot));
+            let drawn = |part: usize| {
+                let reach =
+                    svg.reach(part, &lattice).filter(|_| !art.parts.is_empty() && turns(&art.parts, part));
+                let whole = reach.map(|reach| svg.texture(part, &lattice, reach, translucent));
+                (svg.texture(part, &lattice, lattice.rest(), translucent), whole)
+            };
+            (0..art.parts.len().max(1)).map(drawn).collect()
         }
-        Drawing::Bitmap(bitmap) => ([0.0; 2], vec![bitmap.texture(&lattice, translucent)]),
+        Drawing::Bitmap(bitmap) => match bitmap.texture(&lattice, translucent, alpha) {
+            Ok(texture) => vec![(texture, None)],
+            Err(rule) => return image.refuse(rule),
+        },
     };
-    if textures.iter().all(|t| t.rect.is_empty()) {
-        return node.refuse("the image draws nothing: it is clear everywhere");
+    let is_empty = |(texture, whole): &(Texture, Option<Texture>)| {
+        texture.rect.is_empty() && whole.as_ref().is_none_or(|whole| whole.rect.is_empty())
+    };
+    if textures.iter().all(is_empty) {
+        return image.refuse("the image draws nothing: it is clear everywhere");
     }
-    Some(Figure::new(lattice, origin, &art.parts, textures, bits))
+    for (part, _) in art.parts.iter().zip(&textures).filter(|(_, texture)| is_empty(texture)) {
+        image.warn(format!(
+            "part {:?} draws nothing: it is hidden or empty, and its pose does nothing",
+            part.id
+        ));
+    }
+    Some(Figure::new(lattice, &parts, textures, bits))
 }

@@ -8,9 +8,11 @@
 
 mod assets;
 mod cloth;
+mod drawings;
 mod fuzz;
 mod good;
 mod minute;
+mod parts;
 mod posed;
 mod refused;
 mod resampled;

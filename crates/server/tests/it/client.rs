@@ -18,15 +18,18 @@ pub(crate) const PASSWORD: &str = "wayang kulit";
 
 /// The study that the tests use: two stills and one animation, small. It hides the built-in study by having its name.
 pub(crate) static STUDY: LazyLock<String> = LazyLock::new(|| {
-    let head = "title = \"Small\"\nquestion = \"Which?\"\nseed = 3\n[completion]\nredirect = \"https://example.org/?cc=[CODE]&who=[PROLIFIC_PID]\"";
-    let stills = r#"
-title = "Stills"
-pairs = [{ id = "a", scene = "../scenes/near.toml" }, { id = "b", scene = "../scenes/far.toml" }]"#;
-    let film = r#"
-title = "Loop"
-kind = "animation"
-pairs = [{ id = "c", scene = "../scenes/dance.toml" }]"#;
-    fixtures::study(head, [fixtures::block("stills", stills), fixtures::block("loop", film)])
+    let keys = [
+        ("title", "\"Small\""),
+        ("question", "\"Which?\""),
+        ("seed", "3"),
+        ("completion", r#"{ redirect = "https://example.org/?cc=[CODE]&who=[PROLIFIC_PID]" }"#),
+    ];
+    let pairs =
+        r#"[{ id = "a", scene = "../scenes/near.toml" }, { id = "b", scene = "../scenes/far.toml" }]"#;
+    let stills = [("title", "\"Stills\""), ("pairs", pairs)];
+    let pairs = r#"[{ id = "c", scene = "../scenes/dance.toml" }]"#;
+    let film = [("title", "\"Loop\""), ("kind", "\"animation\""), ("pairs", pairs)];
+    fixtures::study(&keys, [fixtures::block("stills", &stills), fixtures::block("loop", &film)])
 });
 
 const TIMELINE: &str = r#"

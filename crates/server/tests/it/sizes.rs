@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::sync::atomic::Ordering;
 
-const SIZES: &str = "[display]\nsizes = [[64, 36], [128, 72]]\n[completion]";
+const SIZES: &str = "[display]\nsizes = [[64, 36], [128, 72]]\n[texts]";
 
 fn two_sizes() -> String {
-    STUDY.replace("size = [64, 36]\n", "").replacen("[completion]", SIZES, 1)
+    STUDY.replace("size = [64, 36]\n", "").replacen("[texts]", SIZES, 1)
 }
 
 /// The client of before with another study file, its stimuli made.

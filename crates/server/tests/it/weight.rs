@@ -12,8 +12,8 @@ use std::sync::Arc;
 async fn stills_are_weighed_to_the_byte_and_films_about() {
     let folder = folder();
     let study = STUDY.replace("size = [64, 36]\n", "").replacen(
-        "[completion]",
-        "[display]\nsizes = [[64, 36], [128, 72]]\n[completion]",
+        "[texts]",
+        "[display]\nsizes = [[64, 36], [128, 72]]\n[texts]",
         1,
     );
     std::fs::write(folder.path().join("studies/shadow-puppets.toml"), study).unwrap();

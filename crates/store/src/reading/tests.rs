@@ -10,10 +10,10 @@ use std::time::Duration;
 
 /// Three items over two conditions, in two intervals where `seed` is even.
 fn study(seed: u64) -> StudyDefinition {
-    let trial = if seed.is_multiple_of(2) { "two-interval" } else { "two-alternative" };
-    let block =
-        fixtures::block("b", &format!("trial = \"{trial}\"\n{}", fixtures::items(["x", "y", "z"], "a.toml")));
-    let text = fixtures::study(&format!("seed = {seed}"), [block]);
+    let trial = if seed.is_multiple_of(2) { "\"two-interval\"" } else { "\"two-alternative\"" };
+    let items = fixtures::items(["x", "y", "z"], "a.toml");
+    let block = fixtures::block("b", &[("trial", trial), ("items", &items)]);
+    let text = fixtures::study(&[("seed", &seed.to_string())], [block]);
     StudyDefinition::parse("small.toml", &text).unwrap()
 }
 

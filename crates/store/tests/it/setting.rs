@@ -17,19 +17,15 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::TempDir;
 
-const STAIRCASE: &str = r#"
-trial = "two-interval"
-items = [{ id = "l0", scene = "a.toml", level = 0 }, { id = "l1", scene = "a.toml", level = 1 }, { id = "l2", scene = "a.toml", level = 2 }]
-[blocks.psychometric]
-function = "logistic"
-direction = "rising"
-label = "l"
-[blocks.adaptive]
-procedure = "staircase"
-trials = 5
-reversals = 5
-down = 2
-"#;
+const STAIRCASE: [(&str, &str); 4] = [
+    ("trial", "\"two-interval\""),
+    (
+        "items",
+        r#"[{ id = "l0", scene = "a.toml", level = 0 }, { id = "l1", scene = "a.toml", level = 1 }, { id = "l2", scene = "a.toml", level = 2 }]"#,
+    ),
+    ("psychometric", r#"{ function = "logistic", direction = "rising", label = "l" }"#),
+    ("adaptive", r#"{ procedure = "staircase", trials = 5, reversals = 5, down = 2 }"#),
+];
 
 /// A minute: longer than any test.
 pub(crate) const IDLE: Duration = Duration::from_secs(60);
@@ -41,15 +37,15 @@ pub(crate) fn study() -> StudyDefinition {
 
 /// Three stills, then a staircase of five trials in two intervals.
 pub(crate) fn adaptive() -> StudyDefinition {
-    of_blocks("adaptive.toml", &[stills(), fixtures::block("levels", STAIRCASE)])
+    of_blocks("adaptive.toml", &[stills(), fixtures::block("levels", &STAIRCASE)])
 }
 
 fn stills() -> String {
-    fixtures::block("stills", &fixtures::items(["a", "b", "c"], "a.toml"))
+    fixtures::block("stills", &[("items", &fixtures::items(["a", "b", "c"], "a.toml"))])
 }
 
 fn of_blocks(file: &str, blocks: &[String]) -> StudyDefinition {
-    StudyDefinition::parse(file, &fixtures::study("seed = 3\nsize = [16, 16]", blocks)).unwrap()
+    StudyDefinition::parse(file, &fixtures::study(&[("seed", "3"), ("size", "[16, 16]")], blocks)).unwrap()
 }
 
 /// A picture of one shade, packed fast or well.

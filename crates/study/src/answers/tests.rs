@@ -14,18 +14,25 @@ use std::collections::{BTreeSet, HashSet};
 fn study() -> StudyDefinition {
     let block = |id: &str, conditions: &str, target: &str, items: usize, catch: bool| {
         let items = fixtures::items((0..items).map(|i| format!("{id}{i}")), "a.toml");
-        let keys = format!("conditions = [{conditions}]\ntarget = \"{target}\"\ncatch = {catch}\n{items}");
+        let (conditions, target, catch) =
+            (format!("[{conditions}]"), format!("\"{target}\""), catch.to_string());
+        let keys = [("conditions", &*conditions), ("target", &target), ("catch", &catch), ("items", &items)];
         fixtures::block(id, &keys)
     };
-    let head = "conditions = { a = { technique = \"pa\" }, b = { technique = \"mc\" }, c = { technique = \"pa\" } }\n\
-        screening = { min_rt_ms = 200, max_fast_trials = 1, max_failed_catch_trials = 0, straight_lining = true, incomplete = true }";
+    let keys = [
+        ("conditions", r#"{ a = { technique = "pa" }, b = { technique = "mc" }, c = { technique = "pa" } }"#),
+        (
+            "screening",
+            "{ min_rt_ms = 200, max_fast_trials = 1, max_failed_catch_trials = 0, straight_lining = true, incomplete = true }",
+        ),
+    ];
     let blocks = [
         block("ab", "\"a\", \"b\"", "b", 2, false),
         block("bc", "\"b\", \"c\"", "b", 3, false),
         block("easy", "\"a\", \"c\"", "c", 2, true),
         block("ca", "\"c\", \"a\"", "a", 1, false),
     ];
-    StudyDefinition::parse("s.toml", &fixtures::study(head, blocks)).unwrap()
+    StudyDefinition::parse("s.toml", &fixtures::study(&keys, blocks)).unwrap()
 }
 
 /// A row with texts of its own: participant, pair (two of ten are none of the study's), the target left, left chosen, time.

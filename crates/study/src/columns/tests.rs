@@ -6,12 +6,16 @@ use kelir_fixtures as fixtures;
 use std::collections::BTreeSet;
 
 fn study() -> StudyDefinition {
-    let block = |id: &str, more: &str| {
-        fixtures::block(id, &format!("{more}\n{}", fixtures::items([format!("{id}-x")], "a.toml")))
+    let block = |id: &str, catch: &str, trial: &str| {
+        let items = fixtures::items([format!("{id}-x")], "a.toml");
+        fixtures::block(id, &[("catch", catch), ("trial", trial), ("items", &items)])
     };
-    let blocks =
-        [block("sides", ""), block("easy", "catch = true"), block("intervals", "trial = \"two-interval\"")];
-    StudyDefinition::parse("s.toml", &fixtures::study("", blocks)).unwrap()
+    let blocks = [
+        block("sides", "false", "\"two-alternative\""),
+        block("easy", "true", "\"two-alternative\""),
+        block("intervals", "false", "\"two-interval\""),
+    ];
+    StudyDefinition::parse("s.toml", &fixtures::study(&[], blocks)).unwrap()
 }
 
 #[test]

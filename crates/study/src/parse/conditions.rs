@@ -1,6 +1,6 @@
 //! `[conditions.NAME]`: how pictures come to be.
 
-use super::{ReadBlock, relative};
+use super::blocks::{ReadBlock, relative};
 use crate::definition::{Block, Condition, Kind, Pictures};
 use crate::fields::{IDENTIFIER, SECTION, identifier, text};
 use kelir_reader::{Fields, Node};

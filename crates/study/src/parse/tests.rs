@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::definition::Direction;
+use crate::trials::TrialKind;
 use crate::versions::VersionStimulus;
 use kelir_stats::psychometric::{Lapse, Sigmoid};
 

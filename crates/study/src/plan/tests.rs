@@ -1,7 +1,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
 use super::*;
-use crate::definition::{Block, Completion, Condition, Item, Texts};
+use crate::definition::{Block, Completion, Condition, Item};
+use crate::languages::Texts;
 use kelir_fixtures as fixtures;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
@@ -156,22 +157,25 @@ fn sides_are_independent_of_the_pair_over_many_slots() {
 
 /// A fixed block, an adaptive one over seven levels of two items each, and a fixed one again.
 fn growing(procedure: &str, seed: u64) -> StudyDefinition {
-    let fixed =
-        |id: &str| fixtures::block(id, &fixtures::items((0..3).map(|i| format!("{id}{i}")), "a.toml"));
+    let fixed = |id: &str| {
+        let items = fixtures::items((0..3).map(|i| format!("{id}{i}")), "a.toml");
+        fixtures::block(id, &[("items", &items)])
+    };
     let levels: Vec<String> =
         (0..14).map(|i| format!("{{ id = \"l{i}\", scene = \"a.toml\", level = {} }}", i / 2)).collect();
-    let growing = format!(
-        "trial = \"two-interval\"\nitems = [{}]\n[blocks.psychometric]\nfunction = \"logistic\"\ndirection = \"rising\"\nlabel = \"l\"\n\
-         [blocks.adaptive]\n{procedure}",
-        levels.join(", ")
-    );
+    let growing = [
+        ("trial", "\"two-interval\""),
+        ("items", &*format!("[{}]", levels.join(", "))),
+        ("psychometric", r#"{ function = "logistic", direction = "rising", label = "l" }"#),
+        ("adaptive", procedure),
+    ];
     let blocks = [fixed("before"), fixtures::block("levels", &growing), fixed("after")];
-    let text = fixtures::study(&format!("seed = {seed}"), blocks);
+    let text = fixtures::study(&[("seed", &seed.to_string())], blocks);
     StudyDefinition::parse("s.toml", &text).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-const STAIRCASE: &str = "procedure = \"staircase\"\ntrials = 30\nreversals = 6\ndown = 2";
-const QUEST: &str = "procedure = \"quest-plus\"\ntrials = 12";
+const STAIRCASE: &str = r#"{ procedure = "staircase", trials = 30, reversals = 6, down = 2 }"#;
+const QUEST: &str = r#"{ procedure = "quest-plus", trials = 12 }"#;
 
 /// Takes a study to its end: the answer to trial i is `answers[i]` (whether the target was chosen).
 fn take(study: &StudyDefinition, slot: u32, answers: &[bool]) -> Vec<Trial> {

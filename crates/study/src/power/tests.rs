@@ -16,18 +16,20 @@ fn study(screening: &str, blocks: &[(&str, &str, usize, &str)]) -> StudyDefiniti
             (0..*items).map(|i| format!("{{ id = \"{id}-{i}\", scene = \"a.toml\"{} }}", level(i))).collect();
         let (target, _) = conditions.split_once(' ').unwrap();
         let conditions = conditions.replace(' ', "\", \"");
-        let items = items.join(", ");
-        let keys =
-            format!("conditions = [\"{conditions}\"]\ntarget = \"{target}\"\nitems = [{items}]\n{rest}");
-        fixtures::block(id, &keys)
+        let keys = [
+            ("conditions", &*format!("[\"{conditions}\"]")),
+            ("target", &format!("\"{target}\"")),
+            ("items", &format!("[{}]", items.join(", "))),
+        ];
+        format!("{}{rest}\n", fixtures::block(id, &keys))
     };
     let mut names: Vec<&str> = blocks.iter().flat_map(|b| b.1.split(' ')).collect();
     names.sort_unstable();
     names.dedup();
     let conditions: Vec<String> = names.iter().map(|n| format!("{n} = {{ technique = \"pa\" }}")).collect();
-    let conditions = format!("conditions = {{ {} }}", conditions.join(", "));
-    let head = format!("seed = 5\n{conditions}\nscreening = {{ {screening} }}");
-    let text = fixtures::study(&head, blocks.iter().map(block).collect::<Vec<_>>());
+    let conditions = format!("{{ {} }}", conditions.join(", "));
+    let keys = [("seed", "5"), ("conditions", &conditions), ("screening", &format!("{{ {screening} }}"))];
+    let text = fixtures::study(&keys, blocks.iter().map(block).collect::<Vec<_>>());
     StudyDefinition::parse("s.toml", &text).unwrap()
 }
 

@@ -5,17 +5,18 @@ use crate::answers::{Answers, Row};
 use kelir_fixtures as fixtures;
 
 fn text() -> String {
-    let block = |id: &str, keys: &str, items: &[&str]| {
-        fixtures::block(id, &format!("{keys}\n{}", fixtures::items(items, "a.toml")))
-    };
+    let items = |ids: &[&str]| fixtures::items(ids, "a.toml");
     let blocks = [
-        block("stills", "title = \"Stills\"", &["a", "b"]),
-        block("photos", "title = \"Photos\"\nconditions = [\"photo\", \"pa\"]", &["c"]),
-        block("easy", "title = \"Catch\"\ncatch = true", &["d"]),
+        fixtures::block("stills", &[("title", "\"Stills\""), ("items", &items(&["a", "b"]))]),
+        fixtures::block(
+            "photos",
+            &[("title", "\"Photos\""), ("conditions", "[\"photo\", \"pa\"]"), ("items", &items(&["c"]))],
+        ),
+        fixtures::block("easy", &[("title", "\"Catch\""), ("catch", "true"), ("items", &items(&["d"]))]),
     ];
     let conditions =
         "{ pa = { technique = \"pa\" }, mc = { technique = \"mc\" }, photo = { technique = \"mc\" } }";
-    fixtures::study(&format!("question = \"Which?\"\nseed = 11\nconditions = {conditions}"), blocks)
+    fixtures::study(&[("question", "\"Which?\""), ("seed", "11"), ("conditions", conditions)], blocks)
 }
 
 fn study() -> StudyDefinition {

@@ -8,8 +8,9 @@ use kelir_fixtures as fixtures;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
-fn study(extra: &str) -> StudyDefinition {
-    let text = fixtures::study(extra, [fixtures::block("b", &fixtures::items(["x", "y"], "a.toml"))]);
+fn study(keys: &[(&str, &str)]) -> StudyDefinition {
+    let block = fixtures::block("b", &[("items", &fixtures::items(["x", "y"], "a.toml"))]);
+    let text = fixtures::study(keys, [block]);
     StudyDefinition::parse("s.toml", &text).unwrap()
 }
 
@@ -124,7 +125,7 @@ fn ids(judged: &[&crate::answers::Participant]) -> Vec<String> {
 
 #[test]
 fn one_session_a_person_is_judged_the_first_complete_one() {
-    let study = study("");
+    let study = study(&[]);
     let visits = [
         visit("1", Some("ann"), None),
         visit("2", Some("ann"), Some(50)),
@@ -149,7 +150,7 @@ fn one_session_a_person_is_judged_the_first_complete_one() {
 
 #[test]
 fn trial_runs_and_simulations_are_left_out_unless_asked_for_and_count_against_nobody() {
-    let study = study("");
+    let study = study(&[]);
     let of = |session, kind| Visit { kind, ..visit(session, Some("ann"), Some(1)) };
     let visits =
         [of("1", SessionKind::Pilot), of("2", SessionKind::Simulated), of("3", SessionKind::Participant)];
@@ -161,7 +162,7 @@ fn trial_runs_and_simulations_are_left_out_unless_asked_for_and_count_against_no
 
 #[test]
 fn whoever_goes_on_is_in_progress_and_not_excluded_for_not_having_finished() {
-    let study = study("[screening]\nincomplete = true\nmin_rt_ms = 200");
+    let study = study(&[("screening", "{ incomplete = true, min_rt_ms = 200 }")]);
     let active = |session| Visit { is_active: true, ..visit(session, None, None) };
     let visits = [active("1"), visit("2", None, None), active("3")];
     let mut answers = Answers::new(&study);
@@ -183,7 +184,8 @@ fn whoever_goes_on_is_in_progress_and_not_excluded_for_not_having_finished() {
 fn what_was_noticed_leaves_out_by_the_studys_rules_alone() {
     let flagged =
         Visit { flags: vec![Flag::ManyStarts], consented_us: Some(8 * SECOND), ..visit("1", None, Some(9)) };
-    let (all, without) = (study("[screening]\nflags = [\"faster_than_clock\", \"many_starts\"]"), study(""));
+    let (all, without) =
+        (study(&[("screening", r#"{ flags = ["faster_than_clock", "many_starts"] }"#)]), study(&[]));
     let visits = [flagged];
     let answers = answers(&all, &["1"]);
     let judged = Judged::of(&all, &answers, &visits, &[]);
@@ -206,7 +208,7 @@ fn params(list: &[(&str, &str)]) -> BTreeMap<String, String> {
 
 #[test]
 fn ids_are_kept_as_sent_and_named_by_the_parameters_of_panels_or_of_the_study() {
-    let rules = study("").session;
+    let rules = study(&[]).session;
     for id in ["abc", "a@b.example", "ä. ö", "=1+1", "مرحبا", "\u{202e}x", &"x".repeat(512)] {
         assert_eq!(rules.identify(&params(&[("PROLIFIC_PID", id)])), Ok(Some(("PROLIFIC_PID", id))));
     }
@@ -216,14 +218,14 @@ fn ids_are_kept_as_sent_and_named_by_the_parameters_of_panels_or_of_the_study() 
     assert_eq!(rules.identify(&params(&[("ID", "small"), ("id", "exact")])), Ok(Some(("id", "exact"))));
     assert_eq!(rules.identify(&params(&[("workerId", ""), ("id", "1")])), Ok(Some(("id", "1"))));
     assert_eq!(rules.identify(&params(&[("participant", "p")])), Ok(None));
-    let own = study("[session]\nid = \"participant\"").session;
+    let own = study(&[("session", r#"{ id = "participant" }"#)]).session;
     assert_eq!(own.identify(&params(&[("participant", "p"), ("id", "1")])), Ok(Some(("participant", "p"))));
     assert_eq!(own.identify(&params(&[("id", "1")])), Ok(None));
 }
 
 #[test]
 fn an_id_that_cannot_be_taken_is_refused_by_name() {
-    let rules = study("").session;
+    let rules = study(&[]).session;
     for id in ["", "a\nb", "\u{0}", "\u{7f}", "\u{85}", &"ä".repeat(257)] {
         let refused = rules.identify(&params(&[("id", id)])).unwrap_err();
         assert_eq!((refused.name.as_str(), refused.value.as_str()), ("id", id));
@@ -245,7 +247,7 @@ fn the_table_of_flags_in_the_study_files_pages_is_this_one() {
 
 #[test]
 fn places_that_two_have_completed_are_counted_and_items_that_lean_are_named() {
-    let study = study("");
+    let study = study(&[]);
     let mut visits = [visit("1", None, Some(1)), visit("2", None, Some(2)), visit("3", None, None)];
     let mut given = Answers::new(&study);
     // The target stands first for everybody in x, and alternates in y.

@@ -14,7 +14,6 @@ use glam::{DVec2, DVec3};
 use kelir_scene::EmitterShape;
 
 pub(crate) use kept::UnitImages;
-pub use rows::brightest;
 pub use rows::{UnitRows, unit_image};
 
 /// Where Lambert's formula is used: there, rounding of terms of order one is below 1e-13 of the value.

@@ -1,8 +1,8 @@
 //! E⁰ along whole rows of pixels, and over all of them.
 
 use glam::{DVec2, DVec3};
-use kelir_frame::{View, multiversion};
-use kelir_scene::{Ambient, EmitterShape, Screen, Theatre};
+use kelir_frame::multiversion;
+use kelir_scene::{EmitterShape, Screen};
 use rayon::prelude::*;
 
 use super::{order, rule, unit};
@@ -68,29 +68,31 @@ impl UnitRows {
 
     /// The values of row `j` into `out`, one a column.
     pub fn row(&self, j: usize, out: &mut [f64]) {
+        self.span(j, 0, out);
+    }
+
+    /// Those of the columns from `first` on.
+    pub fn span(&self, j: usize, first: usize, out: &mut [f64]) {
         let y = (0.5 - (j as f64 + 0.5) / self.size[1] as f64) * self.screen[1];
-        match &self.nodes {
-            Some(nodes) => {
-                let add = |out: &mut [f64]| {
-                    out.fill(0.0);
-                    for (offset, weight) in nodes {
-                        let node = self.lamp_m.truncate() + *offset;
-                        add_node(&self.columns, node.x, (node.y - y).powi(2), self.lamp_m.z, *weight, out);
-                    }
-                };
-                if self.stride == 1 {
-                    return add(out);
-                }
-                let mut coarse = vec![0.0; self.columns.len()];
-                add(&mut coarse);
-                let [before, from, to, after] = &self.taps;
-                interpolate(&coarse, self.stride, [before, from, to, after], out);
+        let Some(nodes) = &self.nodes else {
+            let columns = out.iter_mut().zip(&self.columns[first..]);
+            return columns.for_each(|(o, x)| *o = unit(&self.shape, self.lamp_m, DVec2::new(*x, y)));
+        };
+        let add = |columns: &[f64], out: &mut [f64]| {
+            out.fill(0.0);
+            for (offset, weight) in nodes {
+                let node = self.lamp_m.truncate() + *offset;
+                add_node(columns, node.x, (node.y - y).powi(2), self.lamp_m.z, *weight, out);
             }
-            None => out
-                .iter_mut()
-                .zip(&self.columns)
-                .for_each(|(o, x)| *o = unit(&self.shape, self.lamp_m, DVec2::new(*x, y))),
+        };
+        if self.stride == 1 {
+            return add(&self.columns[first..][..out.len()], out);
         }
+        let points = first / self.stride..(first + out.len()).div_ceil(self.stride) + 3;
+        let mut coarse = vec![0.0; points.len()];
+        add(&self.columns[points], &mut coarse);
+        let [before, from, to, after] = &self.taps;
+        interpolate(&coarse, first % self.stride, [before, from, to, after], out);
     }
 }
 
@@ -101,16 +103,19 @@ fn lagrange(t: f64) -> [f64; 4] {
 }
 
 #[inline(always)]
-fn interpolate_generic(coarse: &[f64], stride: usize, taps: [&[f64]; 4], out: &mut [f64]) {
-    for (out, c) in out.chunks_mut(stride).zip(coarse.windows(4)) {
-        let n = out.len();
-        let [before, from, to, after] = taps.map(|weights| &weights[..n]);
+fn interpolate_generic(coarse: &[f64], first: usize, taps: [&[f64]; 4], mut out: &mut [f64]) {
+    let mut from = first;
+    for c in coarse.windows(4) {
+        let n = (taps[0].len() - from).min(out.len());
+        let (here, rest) = out.split_at_mut(n);
+        let [w0, w1, w2, w3] = taps.map(|weights| &weights[from..from + n]);
         for k in 0..n {
-            out[k] = before[k] * c[0] + from[k] * c[1] + to[k] * c[2] + after[k] * c[3];
+            here[k] = w0[k] * c[0] + w1[k] * c[1] + w2[k] * c[2] + w3[k] * c[3];
         }
+        (from, out) = (0, rest);
     }
 }
-multiversion! { fn interpolate(coarse: &[f64], stride: usize, taps: [&[f64]; 4], out: &mut [f64]) = interpolate_generic; }
+multiversion! { fn interpolate(coarse: &[f64], first: usize, taps: [&[f64]; 4], out: &mut [f64]) = interpolate_generic; }
 
 #[inline(always)]
 fn add_node_generic(columns: &[f64], x: f64, dy2: f64, h: f64, weight: f64, out: &mut [f64]) {
@@ -154,31 +159,4 @@ pub(super) fn means_over_pixels(image: &[f64], [width, height]: [usize; 2]) -> V
         }
     });
     out
-}
-
-/// The brightest unshadowed irradiance over pixels and channels.
-pub fn brightest(theatre: &Theatre, view: &View) -> f64 {
-    let lamp = &theatre.lamp;
-    let units: Vec<_> = lamp
-        .emitters
-        .iter()
-        .map(|e| (e.radiance, UnitRows::new(&e.shape, lamp.position_m, &theatre.screen, view.size)))
-        .collect();
-    let dome = match theatre.ambient {
-        Ambient::Dome { radiance } => radiance.map(|l| l * std::f64::consts::PI),
-        _ => [0.0; 3],
-    };
-    let mut unit = vec![0.0; view.size[0]];
-    let mut most = 0f64;
-    for j in 0..view.size[1] {
-        let mut sums = vec![dome; view.size[0]];
-        for (radiance, rows) in &units {
-            rows.row(j, &mut unit);
-            for (sum, unit) in sums.iter_mut().zip(&unit) {
-                (0..3).for_each(|c| sum[c] += radiance[c] * unit);
-            }
-        }
-        most = sums.iter().flatten().copied().fold(most, f64::max);
-    }
-    most
 }

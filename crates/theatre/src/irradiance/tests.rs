@@ -52,6 +52,29 @@ fn rows_keep_their_bound() {
     assert_eq!(strides, [4, 4, 4, 1, 1], "both ways are tried");
 }
 
+/// Any columns of a row are those of the whole row, to the bit.
+#[test]
+fn spans_are_parts_of_rows() {
+    let screen = Screen { width_m: 1.6, height_m: 0.9, albedo: kelir_scene::Albedo::Uniform([1.0; 3]) };
+    let lamp = DVec3::new(0.3, -0.1, -1.5);
+    for (shape, width) in [
+        (EmitterShape::Rectangle { size_m: [0.1, 0.07] }, 1600),
+        (EmitterShape::Rectangle { size_m: [0.1, 0.07] }, 37),
+        (EmitterShape::Disk { radius_m: 0.05 }, 40),
+    ] {
+        let rows = UnitRows::new(&shape, lamp, &screen, [width, 9]);
+        let mut whole = vec![0.0; width];
+        rows.row(3, &mut whole);
+        for (first, count) in
+            [(0, 1), (1, 2), (3, 5), (4, 8), (7, 30), (width - 1, 1), (0, width), (5, width - 5)]
+        {
+            let mut part = vec![f64::NAN; count];
+            rows.span(3, first, &mut part);
+            assert_eq!(part, whole[first..first + count], "{width} columns, {count} from {first}");
+        }
+    }
+}
+
 /// Against 64 × 64 midpoints in each pixel; the value at the centre is far off (negative control).
 #[test]
 fn means_over_pixels_are_means() {

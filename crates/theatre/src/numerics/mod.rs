@@ -7,6 +7,7 @@
 mod cases;
 mod curves;
 mod emitters;
+mod stacks;
 mod variants;
 
 use kelir_frame::{Frame, RenderError, Renderer, View, encode};
@@ -16,6 +17,7 @@ use rayon::prelude::*;
 pub use cases::{Case, Pattern, cases};
 pub use curves::{Curve, Step, curves};
 pub use emitters::{EmitterErrors, emitters};
+pub use stacks::{StackRow, stacks};
 
 use crate::oracle::{self, Point};
 use crate::pa::plan::Plan;

@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
+use kelir_frame::Backend;
+
 use super::*;
 
 /// Masks that are small enough for a test; `kelir bench numerics` goes to 8192².
@@ -77,4 +79,22 @@ fn curves_fall_and_the_dome_keeps_its_bound() {
     assert_eq!(domes.len(), 3);
     // The negative control: a coarser lattice does not keep it.
     assert!(domes.iter().any(|c| c.steps[0].max > 1e-3), "{domes:?}");
+}
+
+/// From 1 to 256 puppets behind each other, in 8 and 16 bits, by every technique on both backends.
+#[test]
+fn many_puppets_are_a_product_that_stays_one() {
+    // A software adapter takes long; `kelir bench numerics` asks any for all.
+    for (backend, most, expected) in [(Backend::Cpu, 256, 28 * 5), (Backend::Gpu, 17, 20 * 4)] {
+        let rows = stacks(most, backend, |_| ()).unwrap();
+        assert_eq!(rows.len(), expected);
+        for row in &rows {
+            assert!(row.holds(), "{row:?}");
+            assert!(row.error.is_some(), "{row:?}");
+        }
+        // The negative control: an edge that is seen wrongly is told, so a stack that lets nothing through is no excuse.
+        assert!(
+            rows.iter().any(|row| row.technique == "points" && row.error.is_some_and(|error| error > 0.01))
+        );
+    }
 }

@@ -13,6 +13,9 @@ pub(crate) struct Padded {
     pub channels: usize,
     /// The largest code.
     pub max_code: u32,
+    /// What a code counts: the power of two above which there is none, so that products over many planes stay below 1 and are rounded as
+    /// products of codes would be.
+    pub unit: f32,
     /// `channels` planes of `stride * rows` codes.
     pub codes: Vec<u16>,
     /// `(stride + 1) * (rows + 1)` sums of [a texel differs from its left or upper neighbour], wrapping.
@@ -47,7 +50,9 @@ impl Padded {
                 }
             }
         }
-        let mut padded = Self { stride, rows, channels: mask.channels, max_code, codes, changes: Vec::new() };
+        let unit = 1.0 / (max_code + 1) as f32;
+        let mut padded =
+            Self { stride, rows, channels: mask.channels, max_code, unit, codes, changes: Vec::new() };
         padded.changes = padded.count_changes();
         padded
     }

@@ -33,8 +33,8 @@ pub(super) struct Estimator<'a> {
     pub meter: &'a Meter,
 }
 
-/// One estimate to sample: the light of one emitter through planes `first..end` at one pixel, and the product of codes
-/// that it deviates from.
+/// One estimate to sample: the light of one emitter through planes `first..end` at one pixel, and the product of codes, each in its
+/// mask's unit, that it deviates from.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Job {
@@ -214,7 +214,9 @@ impl Estimator<'_> {
         }
         let known = self.known(k, i, j, planes.clone());
         let [v0_r, v0_g, v0_b] = known.unwrap_or([0.0; 3]);
-        let full: f64 = self.masks[planes.clone()].iter().map(|m| f64::from(m.max_code)).product();
+        // Rounded as the samples' products are, so that what is clear is exactly 1.
+        let full =
+            f64::from(self.masks[planes.clone()].iter().map(|m| m.max_code as f32 * m.unit).product::<f32>());
         let lit = self.lit(k, j * self.plan.size[0] + i);
         let base = [v0_r, v0_g, v0_b].map(|v| lit * (f64::from(v) / full));
         if known.is_some() && self.skip {
@@ -228,7 +230,7 @@ impl Estimator<'_> {
         (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none() && !dark)
     }
 
-    /// The product of codes where the bounds say that it is one value: all planes constant, or one of them opaque.
+    /// The product of codes, each in its mask's unit, where the bounds say that it is one value: all planes constant, or one of them opaque.
     fn known(&self, k: usize, i: usize, j: usize, planes: std::ops::Range<usize>) -> Option<[f32; 3]> {
         let mut product = Some([1f32; 3]);
         for (map, mask) in self.plan.emitters[k].planes[planes.clone()].iter().zip(&self.masks[planes]) {
@@ -237,7 +239,7 @@ impl Estimator<'_> {
                 product = None;
                 continue;
             }
-            let codes = [0, 1, 2].map(|c| f32::from(mask.code(c, x.first, y.first)));
+            let codes = [0, 1, 2].map(|c| f32::from(mask.code(c, x.first, y.first)) * mask.unit);
             if codes == [0.0; 3] {
                 return Some(codes);
             }

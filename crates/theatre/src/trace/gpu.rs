@@ -7,9 +7,10 @@ use kelir_frame::RenderError;
 use kelir_frame::gpu::{Gpu, Output};
 use rayon::prelude::*;
 
+use super::axis::Axis;
 use super::bounds::Padded;
 use super::estimate::Job;
-use super::plan::{Axis, Plan, PlaneMap, Shape};
+use super::plan::{Plan, PlaneMap, Shape};
 use super::sobol::{self, Points, REPLICATES};
 
 /// The shader's text.
@@ -71,6 +72,7 @@ pub(super) struct Map {
     pub down_y: f32,
     pub normal_x: f32,
     pub normal_y: f32,
+    pub unit: f32,
 }
 
 /// What one job adds to a tilted plane.
@@ -147,13 +149,13 @@ impl Sampler {
             emitters.push(Emitter { side_x, side_y, pixel_x, pixel_y, shape });
             tangents.extend(e.columns.iter().chain(&e.rows).copied());
             for (p, map) in e.planes.iter().enumerate() {
-                let (layer, channels) = (layer(p), masks[p].channels as u32);
+                let (layer, channels, unit) = (layer(p), masks[p].channels as u32, masks[p].unit);
                 let ([emitter_x, emitter_y], [pixel_x, pixel_y]) = match map {
                     PlaneMap::Parallel(map) => (map.emitter, map.pixel),
                     PlaneMap::Tilted(map) => (map.emitter, map.pixel),
                 };
                 let map_of =
-                    Map { emitter_x, emitter_y, pixel_x, pixel_y, layer, channels, ..Map::default() };
+                    Map { emitter_x, emitter_y, pixel_x, pixel_y, layer, channels, unit, ..Map::default() };
                 match map {
                     PlaneMap::Parallel(map) => {
                         maps.push(map_of);

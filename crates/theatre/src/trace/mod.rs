@@ -12,6 +12,7 @@
 //! Where the masks' bounds say that everything a pixel can see has one transmittance, V₀ is that transmittance and the
 //! mean is exactly zero, sampled or not: no samples are spent there and the bytes are the same. Elsewhere V₀ = 0.
 
+mod axis;
 pub(crate) mod bounds;
 mod estimate;
 #[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]

@@ -2,8 +2,9 @@
 
 use kelir_frame::Isa;
 
+use super::axis::Axis;
 use super::bounds::Padded;
-use super::plan::{Axis, EmitterPlan, Plan, PlaneMap, Shape};
+use super::plan::{EmitterPlan, Plan, PlaneMap, Shape};
 use super::sobol::{self, Points, REPLICATES};
 use super::tilted::{Seen, Tilted};
 
@@ -29,7 +30,7 @@ pub(super) struct Sampler<'a> {
 
 impl Sampler<'_> {
     /// Per channel and replicate: Σ (V − v0) / (1 + tan²θ)² over the points, for pixel (i, j) and emitter `k`, where V
-    /// and `v0` are products of codes.
+    /// and `v0` are products of codes in units of [`Padded::unit`].
     ///
     /// The arithmetic is the same on every machine (no fused operations, a fixed order), only its width differs.
     pub(super) fn sums<const C: usize>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
@@ -137,7 +138,7 @@ impl Sampler<'_> {
         sums
     }
 
-    /// Products of the planes' codes at one step's sixteen points.
+    /// Products of the planes' codes, each in its unit, at one step's sixteen points.
     #[inline(always)]
     fn visibility<const C: usize, const AREA: bool>(
         &self,
@@ -175,7 +176,7 @@ impl Sampler<'_> {
                 // SAFETY: both texels are clamped to the padded grid.
                 let code = unsafe { gather(codes, &at) };
                 for r in 0..REPLICATES {
-                    seen[r] *= f32::from(code[r]);
+                    seen[r] *= f32::from(code[r]) * mask.unit;
                 }
             }
         }

@@ -93,6 +93,7 @@ fn structs_are_laid_out_as_the_shader_expects() {
             down_y,
             normal_x,
             normal_y,
+            unit,
         }
     );
     same_layout!(gpu::WGSL, "Seen", gpu::GpuSeen { x, y, ratio, rest, depth, along_x, along_y });
@@ -118,7 +119,7 @@ fn agreement(truth: &Theatre, drawn: &Theatre, view: &View) -> f64 {
     let points = Points::new(11, 256);
     let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..1 };
     let (before, after) = (&truth.lamp.emitters[0].shape, &drawn.lamp.emitters[0].shape);
-    let scale = plan.emitters[0].scale / (256.0 * 255.0) * before.area_m2() / after.area_m2();
+    let scale = plan.emitters[0].scale / (256.0 * 255.0 / 256.0) * before.area_m2() / after.area_m2();
     // What a light meter reads: the mean of E over the pixel, over E⁰ at its centre. The edge is vertical, so E has its
     // kinks along x, where the midpoints are dense.
     let steps = if view.pixel == Pixel::Area { [512, 2] } else { [1, 1] };

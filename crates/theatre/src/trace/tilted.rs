@@ -13,8 +13,8 @@ use glam::{DMat3, DVec2, DVec3};
 use kelir_frame::View;
 use kelir_scene::{Plane, Theatre};
 
+use super::axis::{Axis, pixel_sides};
 use super::bounds::Range;
-use super::plan::{Axis, pixel_sides};
 use crate::project;
 
 /// One tilted plane as one source lights it.

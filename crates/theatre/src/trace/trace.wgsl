@@ -64,6 +64,8 @@ struct Map {
     down_y: f32,
     normal_x: f32,
     normal_y: f32,
+    // What a code counts, as in bounds.rs.
+    unit: f32,
 }
 
 // What one job adds to a tilted plane, as in tilted.rs.
@@ -236,13 +238,13 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
                     texel(y, y.offset + map.emitter_y * u.y + map.pixel_y * v.y),
                 );
             }
-            let first = f32(textureLoad(masks, at, map.layer, 0).x);
+            let first = f32(textureLoad(masks, at, map.layer, 0).x) * map.unit;
             if coloured {
                 let green = select(0u, 1u, map.channels == 3u);
                 seen *= vec3<f32>(
                     first,
-                    f32(textureLoad(masks, at, map.layer + green, 0).x),
-                    f32(textureLoad(masks, at, map.layer + 2u * green, 0).x),
+                    f32(textureLoad(masks, at, map.layer + green, 0).x) * map.unit,
+                    f32(textureLoad(masks, at, map.layer + 2u * green, 0).x) * map.unit,
                 );
             } else {
                 seen.x *= first;

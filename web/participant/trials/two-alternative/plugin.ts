@@ -1,27 +1,13 @@
 /** jsPsych plugin: two pictures of equal size, stills or animations; which one? By mouse, touch, pen or the arrow keys. */
-import { type JsPsych, type JsPsychPlugin, ParameterType, type TrialType } from "jspsych";
+import type { JsPsych, JsPsychPlugin, TrialType } from "jspsych";
 import type { Schemas } from "../../api.ts";
 import { rounded } from "../../clock.ts";
 import type { Pictures } from "../../stimuli.ts";
-import { commonData, commonParameters, SIMULATED } from "../module.ts";
+import { SIMULATED } from "../module.ts";
 import { answered } from "../shared/answer.ts";
 import { FALLBACK_PERIOD_MS } from "../shared/player.ts";
+import { type Info, info } from "./info.ts";
 import { type Pair, Stage } from "./stage.ts";
-
-const info = <const>{
-  name: "two-alternative",
-  version: "1.3.0",
-  parameters: commonParameters,
-  data: {
-    ...commonData,
-    /** "left" or "right". */
-    choice: { type: ParameterType.STRING },
-    /** "side" or "stack". */
-    arrangement: { type: ParameterType.STRING },
-  },
-};
-
-export type Info = typeof info;
 
 export default class TwoAlternativePlugin implements JsPsychPlugin<Info> {
   static info = info;

@@ -8,7 +8,7 @@ import { words } from "../../words/index.ts";
 import { roomWithin, showAt, shownAt, toWholePixels } from "../shared/place.ts";
 import { Player, played } from "../shared/player.ts";
 import { Taking } from "../shared/taking.ts";
-import type { Info } from "./plugin.ts";
+import type { Info } from "./info.ts";
 
 export type Side = "left" | "right";
 export type Pair = Record<Side, Picture>;

@@ -9,8 +9,8 @@ import { visible } from "../shared/hidden.ts";
 import { roomWithin, showAt, shownAt, toWholePixels } from "../shared/place.ts";
 import { Player, played } from "../shared/player.ts";
 import { Taking } from "../shared/taking.ts";
+import type { Info } from "./info.ts";
 import { mask, seedOf } from "./mask.ts";
-import type { Info } from "./plugin.ts";
 import { type PerStep, SequenceClock, type Step } from "./sequence.ts";
 
 export type Interval = "first" | "second";

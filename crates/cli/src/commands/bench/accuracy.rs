@@ -6,6 +6,7 @@ use anyhow::Result;
 use kelir_house::shipped;
 use kelir_plot::{Axis, Figure, Point, Rule, Series, svg};
 use kelir_render::accuracy::{CaseReport, Measured, Options, Outcome, Report, all, measure};
+use kelir_render::subject::check_view;
 use kelir_render::{Backend, Pixel, View, VisibilityModel, file};
 
 use crate::commands::drawing::{PixelName, parse_backend, parse_size, render_error};
@@ -67,6 +68,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if cases.is_empty() {
         return Err(bad_input(format!("only = {:?}: no technique's name begins so", args.only.join(","))));
     }
+    let view = View { size, pixel, skip: true };
+    check_view(&still, &view).map_err(render_error)?;
     let options = Options {
         backends: args.backend.clone(),
         runs: args.runs,
@@ -74,7 +77,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         reference_seed: args.reference_seed,
         crops: [args.crops, 8],
         tolerance: args.tolerance,
-        ..Options::new(View { size, pixel, skip: true })
+        ..Options::new(view)
     };
     let bar = progress::bar((cases.len() * options.backends.len() + 2) as u64, "reference");
     let report = measure(&scene, &cases, &options, &mut |step| {

@@ -14,7 +14,7 @@ pub(super) fn run(drawing: &Drawing, count: usize, with_scaling: bool, figures: 
         return Err(bad_input("frames = 0: at least one frame is drawn"));
     }
     let scene = drawing.load()?;
-    let view = drawing.view(&scene.still());
+    let view = drawing.view(&scene.still())?;
     let technique = drawing.technique()?;
     let cases = [Case::Slid, Case::Posed, Case::LampMoved, Case::NothingSkipped];
     let report =

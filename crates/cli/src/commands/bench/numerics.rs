@@ -1,7 +1,7 @@
 //! `kelir bench numerics`.
 
 use anyhow::{Result, bail};
-use kelir_render::numerics;
+use kelir_render::{Backend, numerics};
 use serde_json::json;
 
 use crate::bad_input;
@@ -64,8 +64,10 @@ pub(super) fn renderer(most: usize, figures: &Figures) -> Result<()> {
         })
         .collect();
     figures.say(&table(&["emitter", "points", "kelir", "closed form, f64", "closed form, f32"], &lines))?;
+    let stacks = stacks(figures)?;
     let impossible: usize = rows.iter().map(|row| row.impossible).sum();
-    let failed = rows.iter().filter(|row| !row.holds()).count();
+    let failed =
+        rows.iter().filter(|row| !row.holds()).count() + stacks.iter().filter(|row| !row.holds()).count();
     figures.say(&format!(
         "\n{} cases, {} of them parallel: largest error of PA {} (at most {:e}), {impossible} visibilities that are NaN, negative or above 1,\n\
          {off} of {pixels} bytes differ from the oracle's, {} of them by more than a code or further than {} code from a boundary",
@@ -76,11 +78,45 @@ pub(super) fn renderer(most: usize, figures: &Figures) -> Result<()> {
         rows.iter().map(|row| if row.parallel { row.bytes_wrong } else { 0 }).sum::<usize>(),
         numerics::NEAR_BOUNDARY,
     ))?;
-    figures.give(&json!({ "cases": rows, "emitters": emitters }))?;
+    figures.give(&json!({ "cases": rows, "emitters": emitters, "stacks": stacks }))?;
     if failed > 0 {
         bail!("{failed} cases do not hold");
     }
     Ok(())
+}
+
+/// Puppets behind puppets, by every technique on the CPU and on what GPU there is.
+fn stacks(figures: &Figures) -> Result<Vec<numerics::StackRow>> {
+    figures.say("\nPuppets behind each other: the largest error in visibility against the oracle, over 1 to 256 of them, in 8 and 16 bits\n")?;
+    let mut rows = Vec::new();
+    for backend in [Backend::Cpu, Backend::Gpu] {
+        let bar = crate::progress::bar(0, "stacks");
+        match numerics::stacks(256, backend, |puppets| bar.set_message(format!("{puppets} puppets"))) {
+            Ok(drawn) => rows.extend(drawn),
+            Err(error) if backend == Backend::Gpu => figures.say(&format!("Not on a GPU: {error}\n"))?,
+            Err(error) => return Err(render_error(error)),
+        }
+        bar.finish_and_clear();
+    }
+    let mut lines: Vec<Vec<String>> = Vec::new();
+    for of in rows.chunk_by(|a, b| (a.technique, a.backend) == (b.technique, b.backend)) {
+        let errors = of.iter().filter_map(|row| row.error);
+        let (refused, failed) = (
+            of.iter().filter(|row| row.refused.is_some()).count(),
+            of.iter().filter(|row| !row.holds()).count(),
+        );
+        lines.push(vec![
+            of[0].technique.to_owned(),
+            if of[0].backend == Backend::Cpu { "cpu" } else { "gpu" }.to_owned(),
+            of.len().to_string(),
+            error(errors.fold(0.0, f64::max)),
+            of.iter().map(|row| row.impossible).sum::<usize>().to_string(),
+            refused.to_string(),
+            if failed == 0 { String::new() } else { format!("{failed} FAIL") },
+        ]);
+    }
+    figures.say(&table(&["technique", "backend", "stacks", "error", "impossible", "refused", ""], &lines))?;
+    Ok(rows)
 }
 
 /// Error over knobs.

@@ -41,7 +41,7 @@ fn the_preimage_is_the_contracts() {
         "kelir-job/2\n",
         r#"{"backend":"cpu","camera":{"defocus_px":0.8,"jpeg_quality":90,"noise":0.012,"seed":1,"vignette":0.25},"#,
         r#""exposure":"still","knobs":{"dome_steps":32,"map_size":1024,"split":1,"strips":64,"variant":"exact","weights":"area"},"#,
-        r#""output":"still","pixel":"area","reference":{"knobs":{"seed":1,"spp":64},"revision":1,"technique":"mc"},"#,
+        r#""output":"still","pixel":"area","reference":{"knobs":{"seed":1,"spp":64},"revision":2,"technique":"mc"},"#,
         r#""revision":1,"scene":"5ce7e0000000000000000000000000000000000000000000000000000000cafe","shared_revision":1,"#,
         r#""size":[96,54],"technique":"pa","time_s":0.5}"#
     );
@@ -52,7 +52,7 @@ fn the_preimage_is_the_contracts() {
     // sha256sum of that text.
     assert_eq!(
         hex::encode(Sha256::digest(preimage)),
-        "5879043a1f65514c712bc19b347714f5fcc58f03111cc20cac43aec615bdeaf4"
+        "fa64ec5c32b3f6e708275c1007bcc15d0e1e1b0d0c800fd838f4332f4a2980f0"
     );
 }
 
@@ -129,6 +129,8 @@ fn each_field_changes_the_key() {
         let differing: Vec<_> = base.keys().filter(|leaf| base.get(*leaf) != now.get(*leaf)).collect();
         match *path {
             "" => {}
+            // What weighs by irradiance was changed alone.
+            "/knobs/weights" => assert_eq!(differing, ["/knobs/weights", "/revision"]),
             "/technique" => assert!(differing.iter().all(|p| p.starts_with("/knobs/") || *p == path)),
             "/reference/technique" => assert!(differing.iter().all(|p| p.starts_with("/reference/"))),
             "/output" => assert_eq!(differing, ["/output", "/time_s"]),

@@ -37,6 +37,10 @@ impl Subject for Card {
         LIGHT
     }
 
+    fn bytes(&self, view: &View) -> u64 {
+        64 * (view.size[0] * view.size[1]) as u64
+    }
+
     fn same_staging(&self, other: &Self) -> bool {
         self == other
     }
@@ -68,6 +72,10 @@ impl Staged for Deck {
         self.name
     }
 
+    fn label(&self) -> &str {
+        self.name
+    }
+
     fn timeline(&self) -> Option<&Timeline> {
         self.timeline.as_ref()
     }
@@ -86,13 +94,24 @@ impl Staged for Deck {
 
     fn renderer(technique: &Technique, _: Backend) -> Result<Box<dyn Renderer<Card>>, RenderError> {
         technique.check()?;
-        Ok(Box::new(Painter { truth: technique.is_truth() }))
+        Ok(Box::new(Painter {
+            truth: technique.is_truth(),
+            faulty: *technique == faulty(technique.is_truth()),
+        }))
     }
+}
+
+/// What the painter draws with one value that is no number: in the truth a standard error, in anything else a radiance.
+fn faulty(truth: bool) -> Technique {
+    let seed = [("seed".to_owned(), 13.into())];
+    let (name, knobs) = if truth { ("mc", seed.into()) } else { ("points", BTreeMap::new()) };
+    Technique::parse(name, &knobs).unwrap()
 }
 
 /// Draws cards: the truth exactly and with an error bar, anything else one per cent too dark.
 struct Painter {
     truth: bool,
+    faulty: bool,
 }
 
 impl Renderer<Card> for Painter {
@@ -100,13 +119,21 @@ impl Renderer<Card> for Painter {
         let scale = if self.truth { LIGHT } else { 0.99 * LIGHT };
         let radiance: Vec<f32> = card.visibility(view).iter().map(|v| (scale * v) as f32).collect();
         let errors = || card.penumbra(view).iter().map(|soft| if *soft { ERROR } else { 0.0 }).collect();
-        Ok(Frame {
+        let mut frame = Frame {
             size: view.size,
             radiance: [radiance.clone(), radiance.clone(), radiance],
             visibilities: Vec::new(),
             standard_error: self.truth.then(|| [errors(), errors(), errors()]),
             stats: Stats::default(),
-        })
+        };
+        if self.faulty {
+            let at = 2 * view.size[0] + 5;
+            match &mut frame.standard_error {
+                Some(errors) => errors[1][at] = f32::INFINITY,
+                None => frame.radiance[1][at] = f32::NAN,
+            }
+        }
+        Ok(frame)
     }
 
     fn adapter(&self) -> String {
@@ -172,4 +199,27 @@ fn a_card_is_measured() {
     let truth = run(&mut cards(Technique::truth(), Output::Still), &mut |_| ()).unwrap();
     let own = truth.provenance.standard_error.unwrap();
     assert!([own.rms_sampled, own.max].iter().all(|e| (e / floor - 1.0).abs() < 1e-6), "{own:?}");
+}
+
+/// By no way: pictures, films, photographs, linear light, references and their error bars.
+#[test]
+fn nothing_that_is_not_finite_leaves() {
+    let said = |mut job: Job<Deck>| run(&mut job, &mut |_| ()).unwrap_err().to_string();
+    let radiance = "a deck drawn by points: G is NaN at pixel (5, 2)";
+    let error = "a deck drawn by mc: SE.G is inf at pixel (5, 2)";
+    let camera = Some(Camera::default());
+    for (job, expected) in [
+        (cards(faulty(false), Output::Still), radiance),
+        (cards(faulty(false), Output::Animation), radiance),
+        (Job { camera, ..cards(faulty(false), Output::Still) }, radiance),
+        (cards(faulty(true), Output::Still), error),
+        (Job { reference: Some(faulty(true)), ..cards(pa(), Output::Still) }, error),
+    ] {
+        let said = said(job);
+        assert!(said.contains(expected), "{said}");
+    }
+    let mut job = cards(faulty(false), Output::Still);
+    let said = Drawing::open(&mut job).unwrap().radiance(0).unwrap_err().to_string();
+    assert!(said.contains(radiance), "{said}");
+    assert!(rehearse(cards(faulty(false), Output::Animation)).1.is_err());
 }

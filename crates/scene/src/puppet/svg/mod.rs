@@ -1,24 +1,35 @@
-//! SVG puppets: checked element by element, then rasterised part by part with resvg.
+//! SVG puppets: what is drawn of them is checked, then rasterised part by part with resvg.
 
-mod check;
 mod cost;
+mod drawn;
+mod parts;
+mod size;
+mod style;
+mod text;
+
+use std::collections::HashSet;
 
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
-use resvg::usvg::roxmltree::{Document, ParsingOptions};
+use resvg::usvg::roxmltree::Document;
 use resvg::usvg::{ImageHrefResolver, Options, Tree};
 
-use self::check::{check_elements, check_references, find_parts};
+use self::drawn::{Found, Walk, is_svg};
+use self::parts::Group;
+use self::size::Units;
+use self::style::Styles;
 use super::grid::{Lattice, Rect, Texture};
 use crate::colour::srgb8_to_linear;
 use crate::limits;
 
 /// A checked SVG.
 pub(crate) struct Svg {
-    /// The drawing's size in user units.
+    /// The drawing's size in CSS pixels.
     pub size: [f64; 2],
-    /// User coordinates of its top left corner.
-    pub origin: [f64; 2],
-    /// One drawing a part, in drawing order.
+    /// Where its user units lie in them.
+    pub units: Units,
+    /// What may be a mistake, though it can be drawn.
+    pub odd: Vec<String>,
+    /// One drawing a part, in the manifest's order: the whole drawing with the other parts hidden.
     trees: Vec<Tree>,
 }
 
@@ -26,72 +37,51 @@ impl Svg {
     /// Checks an SVG and splits it into the groups named `parts` (all of it is one part when there are none).
     /// Every problem is handed to `refuse`.
     pub(crate) fn open(bytes: &[u8], parts: &[String], refuse: &mut dyn FnMut(String)) -> Option<Self> {
-        if bytes.len() > limits::SVG_BYTES {
-            refuse(format!("has {} bytes; an SVG has at most {}", bytes.len(), limits::SVG_BYTES));
-            return None;
-        }
-        let Ok(text) = std::str::from_utf8(bytes) else {
-            refuse("is not UTF-8 text".to_owned());
-            return None;
-        };
-        // Without a document type there are no entities, neither exploding nor external ones.
-        let options =
-            ParsingOptions { nodes_limit: 4 * limits::SVG_ELEMENTS as u32, ..ParsingOptions::default() };
-        let document = match Document::parse_with_options(text, options) {
-            Ok(document) => document,
-            Err(error) => {
-                refuse(format!("is not an SVG: {error}"));
-                return None;
-            }
-        };
         let refused = std::cell::Cell::new(false);
         let mut refuse = |rule| {
             refused.set(true);
             refuse(rule);
         };
-        check_elements(&document, &mut refuse);
-        let groups = find_parts(&document, parts, &mut refuse);
-        check_references(&document, &groups, &mut refuse);
+        if bytes.len() > limits::SVG_BYTES {
+            refuse(format!("has {} bytes; an SVG has at most {}", bytes.len(), limits::SVG_BYTES));
+            return None;
+        }
+        let text = text::decode(bytes).map_err(&mut refuse).ok()?;
+        let written = text::parse(&text).map_err(&mut refuse).ok()?;
+        let known = text::in_known_units(&written, &text);
+        let document = match &known {
+            Some(known) => text::parse(known).map_err(&mut refuse).ok()?,
+            None => written,
+        };
+        if document.root_element().tag_name().name() != "svg" || !is_svg(document.root_element()) {
+            refuse("is not an SVG: its root is no <svg> of the SVG namespace".to_owned());
+            return None;
+        }
+        size::check(&document).unwrap_or_else(&mut refuse);
+        let styles = Styles::of(&document);
+        let elements = document.descendants().filter(|n| n.is_element()).count();
+        // Every rule is tried on every element.
+        if styles.bytes.saturating_mul(elements) > limits::SVG_STYLING {
+            refuse(format!(
+                "has {} bytes of <style> for {elements} elements; that is too much",
+                styles.bytes
+            ));
+            return None;
+        }
+        let found = Walk::over(&document, &styles);
+        found.refused.iter().cloned().for_each(&mut refuse);
+        twins(&document, parts, &found).into_iter().for_each(&mut refuse);
+        let groups = parts::find(&document, &styles, parts, &found, &mut refuse);
+        if bytes.len() * groups.len() > limits::SVG_SPLIT_BYTES {
+            refuse(format!("has {} bytes in {} parts; that is too much", bytes.len(), groups.len()));
+        }
         if refused.get() {
             return None;
         }
-        if bytes.len() * groups.len() > limits::SVG_SPLIT_BYTES {
-            refuse(format!("has {} bytes in {} parts; that is too much", bytes.len(), groups.len()));
-            return None;
-        }
-        let view = View::of(&document).map_err(&mut refuse).ok()?;
-        let mut trees = Vec::new();
-        for own in 0..groups.len().max(1) {
-            // Each part is the document without the other parts, so that styles, definitions and view box hold as written.
-            let mut alone = String::with_capacity(text.len());
-            let mut at = 0;
-            for (k, group) in groups.iter().enumerate().filter(|(k, _)| *k != own) {
-                let range = document.get_node(*group).map_or(at..at, |n| n.range());
-                debug_assert!(range.start >= at, "groups {k} come in document order");
-                alone.push_str(&text[at..range.start]);
-                at = range.end;
-            }
-            alone.push_str(&text[at..]);
-            match tree(&alone) {
-                Ok(tree) => trees.push(tree),
-                Err(rule) => refuse(rule),
-            }
-        }
-        if refused.get() || trees.is_empty() {
-            return None;
-        }
-        // `groups` is in document order, the manifest's order is the drawing order.
-        let mut order: Vec<(usize, Tree)> = match parts {
-            [] => vec![(0, trees.remove(0))],
-            _ => {
-                let ids = groups.iter().map(|g| document.get_node(*g).and_then(|n| n.attribute("id")));
-                let rank = |id: Option<&str>| parts.iter().position(|p| Some(p.as_str()) == id).unwrap_or(0);
-                ids.map(rank).zip(trees).collect()
-            }
-        };
-        order.sort_by_key(|(rank, _)| *rank);
-        let trees = order.into_iter().map(|(_, tree)| tree).collect();
-        Some(Self { size: view.size, origin: view.origin, trees })
+        let trees = trees(&document, &groups).map_err(&mut refuse).ok()?;
+        let size = trees.first().map(|tree| [tree.size().width(), tree.size().height()].map(f64::from))?;
+        let units = Units::of(&document, size).map_err(&mut refuse).ok()?;
+        Some(Self { size, units, odd: found.odd.into_iter().collect(), trees })
     }
 
     /// Whether it can be drawn on `rows` rows with bearable time and memory; the rule that it breaks otherwise.
@@ -103,13 +93,29 @@ impl Svg {
         sum.check()
     }
 
-    /// Opacities α(1 − T) of part `part` on the lattice.
-    pub(crate) fn texture(&self, part: usize, lattice: &Lattice, translucent: bool) -> Texture {
+    /// The texels that part `part` is drawn on when nothing cuts it off at the drawing's edge; `None` where it does not reach beyond.
+    pub(crate) fn reach(&self, part: usize, lattice: &Lattice) -> Option<Rect> {
+        let bounds = self.trees[part].root().abs_layer_bounding_box();
+        let [left, right] = [bounds.left(), bounds.right()].map(|x| lattice.at([f64::from(x), 0.0])[0]);
+        let [top, bottom] = [bounds.top(), bounds.bottom()].map(|y| lattice.at([0.0, f64::from(y)])[1]);
+        let rest = lattice.rest();
+        let reach = Rect {
+            x0: left.floor() as i64,
+            y0: top.floor() as i64,
+            x1: right.ceil() as i64,
+            y1: bottom.ceil() as i64,
+        };
+        (!reach.is_empty() && rest.union(reach) != rest).then_some(reach)
+    }
+
+    /// Opacities α(1 − T) of part `part` on the texels of `within`.
+    pub(crate) fn texture(&self, part: usize, lattice: &Lattice, within: Rect, translucent: bool) -> Texture {
         let tree = &self.trees[part];
         let scale = lattice.rows as f32 / tree.size().height();
-        let transform = Transform::from_row(scale, 0.0, 0.0, scale, lattice.margin as f32, 0.0);
+        let [left, top] = [lattice.margin - within.x0 as f64, -within.y0 as f64];
+        let transform = Transform::from_row(scale, 0.0, 0.0, scale, left as f32, top as f32);
         let mut pixmap =
-            Pixmap::new(lattice.columns as u32, lattice.rows as u32).expect("a checked grid has texels");
+            Pixmap::new(within.width() as u32, within.height() as u32).expect("a checked grid has texels");
         resvg::render(tree, transform, &mut pixmap.as_mut());
         let pixels = pixmap.pixels();
         let linear = srgb8_to_linear();
@@ -121,69 +127,41 @@ impl Svg {
             let colour = p.demultiply();
             [colour.red(), colour.green(), colour.blue()].map(|c| alpha * (1.0 - linear[c as usize]))
         };
-        let within = Rect::of_size(lattice.columns, lattice.rows);
-        Texture::new(within, |x, y| opacity(pixels[y as usize * lattice.columns + x as usize]))
+        let at = |x: i64, y: i64| (y - within.y0) as usize * within.width() + (x - within.x0) as usize;
+        Texture::new(within, |x, y| opacity(pixels[at(x, y)]))
     }
 }
 
+/// Two elements of one id, where it matters: something refers to it, or a part is called so.
+fn twins(document: &Document, parts: &[String], found: &Found) -> Vec<String> {
+    let mut ids = HashSet::new();
+    let all = document.descendants().filter_map(|n| n.attribute("id"));
+    let matters = |id: &&str| found.referred.contains(*id) || parts.iter().any(|part| part == id);
+    let twins: HashSet<&str> = all.filter(matters).filter(|id| !ids.insert(*id)).collect();
+    twins.into_iter().map(|id| format!("has two elements of id {id:?}; give one of them another")).collect()
+}
+
+/// The whole drawing, or for each group the drawing with all others hidden, by a style sheet that changes nothing else.
+fn trees(document: &Document, groups: &[Group]) -> Result<Vec<Tree>, String> {
+    if groups.is_empty() {
+        return Ok(vec![tree(document, String::new())?]);
+    }
+    let alone = |own: usize| {
+        let others = groups.iter().enumerate().filter(|(k, _)| *k != own);
+        tree(document, others.map(|(_, group)| group.hidden.as_str()).collect())
+    };
+    (0..groups.len()).map(alone).collect()
+}
+
 /// Parses with no access to files, fonts or the network.
-fn tree(text: &str) -> Result<Tree, String> {
+fn tree(document: &Document, style_sheet: String) -> Result<Tree, String> {
     let options = Options {
         image_href_resolver: ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
             resolve_string: Box::new(|_, _| None),
         },
+        style_sheet: (!style_sheet.is_empty()).then_some(style_sheet),
         ..Options::default()
     };
-    let document = Document::parse(text).map_err(|e| format!("is not an SVG: {e}"))?;
-    Tree::from_xmltree(&document, &options).map_err(|e| format!("is not an SVG that can be drawn: {e}"))
-}
-
-/// The view box, which must have the aspect of `width` and `height` where those are given.
-struct View {
-    origin: [f64; 2],
-    size: [f64; 2],
-}
-
-impl View {
-    fn of(document: &Document) -> Result<Self, String> {
-        let root = document.root_element();
-        let length = |name: &str| -> Result<Option<f64>, String> {
-            let Some(text) = root.attribute(name) else { return Ok(None) };
-            let number = text.trim().trim_end_matches("px").trim_end_matches("mm").trim();
-            match number.parse::<f64>() {
-                Ok(value) if value.is_finite() && value > 0.0 => Ok(Some(value)),
-                _ => Err(format!("has {name} = {text:?}; it must be a positive number, px or mm")),
-            }
-        };
-        let (width, height) = (length("width")?, length("height")?);
-        let Some(text) = root.attribute("viewBox") else {
-            return match (width, height) {
-                (Some(width), Some(height)) => Ok(Self { origin: [0.0; 2], size: [width, height] }),
-                _ => Err("has neither a viewBox nor width and height".to_owned()),
-            };
-        };
-        let numbers: Vec<f64> = text
-            .split(|c: char| c.is_whitespace() || c == ',')
-            .filter(|s| !s.is_empty())
-            .map(|s| s.parse().unwrap_or(f64::NAN))
-            .collect();
-        let &[x, y, w, h] = numbers.as_slice() else {
-            return Err(format!("has viewBox = {text:?}; it must be four numbers"));
-        };
-        if !(numbers.iter().all(|n| n.abs() <= 1e6) && w >= 1e-3 && h >= 1e-3) {
-            return Err(format!(
-                "has viewBox = {text:?}; its size must be positive and its numbers at most 1e6"
-            ));
-        }
-        if let (Some(width), Some(height)) = (width, height)
-            && (width / height - w / h).abs() > 1e-3 * w / h
-        {
-            return Err(format!("has a viewBox of aspect {} but width/height of {}", w / h, width / height));
-        }
-        if width.is_some() != height.is_some() {
-            return Err("has only one of width and height beside its viewBox; give both or none".to_owned());
-        }
-        Ok(Self { origin: [x, y], size: [w, h] })
-    }
+    Tree::from_xmltree(document, &options).map_err(|e| format!("is not an SVG that can be drawn: {e}"))
 }

@@ -12,12 +12,16 @@ fn study(function: &str, levels: &[f64]) -> StudyDefinition {
         .zip(levels)
         .map(|(i, level): (u32, _)| format!("{{ id = \"p{i}\", scene = \"a.toml\", level = {level:?} }}"))
         .collect();
-    let conditions = "conditions = { full = { technique = \"pa\" }, few = { technique = \"mc\" } }";
-    let keys = format!(
-        "conditions = [\"full\", \"few\"]\ntarget = \"full\"\nitems = [{}]\n[blocks.psychometric]\n{function}",
-        items.join(", ")
+    let items = format!("[{}]", items.join(", "));
+    let block = fixtures::block(
+        "levels",
+        &[("conditions", "[\"full\", \"few\"]"), ("target", "\"full\""), ("items", &items)],
     );
-    let text = fixtures::study(&format!("seed = 5\n{conditions}"), [fixtures::block("levels", &keys)]);
+    let conditions = "{ full = { technique = \"pa\" }, few = { technique = \"mc\" } }";
+    let text = fixtures::study(
+        &[("seed", "5"), ("conditions", conditions)],
+        [block, format!("[blocks.psychometric]\n{function}")],
+    );
     StudyDefinition::parse("levels.toml", &text).unwrap()
 }
 

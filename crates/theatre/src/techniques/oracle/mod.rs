@@ -11,6 +11,7 @@
 
 mod pieces;
 mod renderer;
+mod upright;
 mod visibility;
 
 use std::ops::Bound;
@@ -22,7 +23,8 @@ use serde::{Deserialize, Serialize};
 use crate::knobs::{self, Knob, Range};
 
 pub use renderer::{BothModels, Oracle};
-pub use visibility::{Point, Visibility, dome, geometric, visibility};
+pub use upright::Visibility;
+pub use visibility::{Point, dome, geometric, visibility};
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
 /// draws, in its own files or in what it shares with others. What was made before is then made anew.

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use kelir_scene::{EmitterShape, Plane, Theatre};
 
-use super::visibility::{Visibility, upright_at};
+use super::upright::{Visibility, upright_at};
 use crate::irradiance;
 use crate::project::turned;
 

@@ -72,6 +72,11 @@ impl Default for Knobs {
 }
 
 impl Knobs {
+    /// [`REVISION`], or the next where weights are of irradiance: those alone changed, by a rounding, since they are taken along rows.
+    pub fn revision(&self) -> u32 {
+        REVISION + u32::from(self.weights == Weights::Irradiance)
+    }
+
     /// Errors: a knob out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
         knobs::check(KNOBS, self)

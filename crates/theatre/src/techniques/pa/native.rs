@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use kelir_frame::encode::pack;
 use kelir_frame::{Frame, Isa, RenderError, Renderer, Stats, View, check_display};
-use kelir_scene::{Ambient, Theatre};
+use kelir_scene::{Ambient, EmitterShape, Theatre};
 use rayon::prelude::*;
 
 use super::background::Background;
@@ -15,7 +15,9 @@ use super::rows::Combined;
 use super::tiles::{Kind, State, TILE, Tiles};
 use super::{Knobs, Skips, Weights, shadow_map};
 use crate::emitters::{each_visibility, emitters};
+use crate::irradiance::UnitRows;
 use crate::project::sides_m;
+use crate::project::tilted::Piece;
 
 mod loops;
 mod shading;
@@ -47,7 +49,8 @@ enum Band<'a> {
 struct Job<'a> {
     theatre: &'a Theatre,
     view: &'a View,
-    weights: Weights,
+    /// Where pieces weigh by what they give a pixel: E⁰ of each.
+    piece_units: Vec<UnitRows>,
     skips: Skips,
     plan: &'a Plan,
     tiles: Tiles<'a>,
@@ -104,6 +107,13 @@ struct Scratch {
     shade: Vec<f32>,
     /// Weights of the current piece at each pixel.
     piece: Vec<f32>,
+    /// What they are made of.
+    unit: Vec<f64>,
+}
+
+fn units_of(piece: &Piece, theatre: &Theatre, view: &View) -> UnitRows {
+    let shape = EmitterShape::Rectangle { size_m: piece.size_m };
+    UnitRows::new(&shape, piece.centre_m, &theatre.screen, view.size)
 }
 
 impl Native {
@@ -167,7 +177,12 @@ impl Native {
         let job = Job {
             theatre,
             view,
-            weights: self.knobs.weights,
+            piece_units: match self.knobs.weights {
+                Weights::Area => Vec::new(),
+                Weights::Irradiance => {
+                    plan.pieces.iter().map(|piece| units_of(piece, theatre, view)).collect()
+                }
+            },
             skips,
             plan: &plan,
             tiles: Tiles { theatre, view, plan: &plan, skips, tables: self.tables.of(theatre, &plan) },

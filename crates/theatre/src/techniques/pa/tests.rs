@@ -344,6 +344,50 @@ fn display_is_the_encoded_radiance_and_skipping_changes_no_byte() {
     assert_eq!(cases, 36);
 }
 
+/// What one drawing leaves for the next is what the next would make: after the lamp, the cloth, the size or the pixel rule has changed.
+#[test]
+fn what_is_kept_between_drawings_changes_no_byte() {
+    let cloth = |grey: bool| {
+        let rgb = (0..90 * 50)
+            .map(|k| [0, 1, 2].map(|c| 0.2 + 0.6 * ((k * 7 + if grey { 0 } else { c }) % 13) as f32 / 13.0));
+        Albedo::Image(Arc::new(kelir_scene::LinearImage { width: 90, height: 50, rgb: rgb.collect() }))
+    };
+    let base = theatre(vec![plane(figure(100, 128, 1), [-0.3, 0.0, -0.2], 0.5)]);
+    let changed = |change: &dyn Fn(&mut Theatre)| {
+        let mut scene = base.clone();
+        change(&mut scene);
+        scene
+    };
+    let (grey, coloured) = (cloth(true), cloth(false));
+    let moved = |s: &mut Theatre| s.lamp.position_m.x += 0.1;
+    let small = View { size: [160, 90], ..view(Pixel::Area) };
+    let drawings = [
+        (changed(&|s| s.screen.albedo = grey.clone()), view(Pixel::Area)),
+        (changed(&|s| (s.screen.albedo, s.lamp.position_m.x) = (grey.clone(), 0.2)), view(Pixel::Area)),
+        (changed(&|s| (s.screen.albedo, s.lamp.position_m.x) = (grey.clone(), 0.2)), view(Pixel::Centre)),
+        (changed(&|s| s.screen.albedo = coloured.clone()), view(Pixel::Centre)),
+        (
+            changed(&|s| {
+                (s.screen.albedo, s.ambient) = (coloured.clone(), Ambient::Dome { radiance: [2.0, 1.0, 3.0] })
+            }),
+            view(Pixel::Centre),
+        ),
+        (changed(&|s| s.screen.albedo = coloured.clone()), small),
+        (changed(&|s| s.lamp.emitters[0].radiance = [90.0, 20.0, 5.0]), small),
+        (changed(&moved), view(Pixel::Area)),
+        (base.clone(), view(Pixel::Area)),
+    ];
+    let mut kept = Native::new(Knobs::default());
+    let mut different = Vec::new();
+    for (scene, view) in &drawings {
+        let frame = kept.radiance(scene, view).unwrap();
+        let fresh = Native::new(Knobs::default()).radiance(scene, view).unwrap();
+        assert!(frame.radiance == fresh.radiance, "{:?} {:?}", scene.screen.albedo, view);
+        different.push(fresh.radiance);
+    }
+    assert!(different.windows(2).all(|two| two[0] != two[1]), "two drawings are the same: nothing is tried");
+}
+
 #[test]
 fn thread_count_changes_no_byte() {
     let scene = theatre(vec![plane(figure(300, 384, 1), [0.0, 0.0, -0.2], 0.7)]);

@@ -6,11 +6,11 @@ use kelir_scene::Ambient;
 
 use super::loops::multiply;
 use super::{Counts, Job, Scratch};
+use crate::pa::Skips;
 use crate::pa::plan::Lookup;
 use crate::pa::rows::Combined;
 use crate::pa::table::Table;
 use crate::pa::tiles::{State, TILE};
-use crate::pa::{Skips, Weights};
 use crate::project::pixel_m;
 
 impl Job<'_> {
@@ -96,12 +96,19 @@ impl Job<'_> {
         let mut weights = vec![0f32; n];
         rows.fill(0.0);
         let pieces = || (0..plan.pieces.len()).filter(|p| plan.pieces[*p].emitter == e);
-        for p in pieces() {
-            self.piece_weights(p, j, span, &mut scratch.piece);
-            weights.iter_mut().zip(&scratch.piece).for_each(|(s, w)| *s += w);
+        let add = |weights: &mut [f32], piece: &[f32]| {
+            weights.iter_mut().zip(piece).for_each(|(s, w)| *s += w);
+        };
+        // A puppet's own shadow asks for the sum of all weights before the first piece.
+        for p in pieces().filter(|_| own) {
+            self.piece_weights(p, j, span, &mut scratch.unit, &mut scratch.piece);
+            add(&mut weights, &scratch.piece);
         }
         for p in pieces() {
-            self.piece_weights(p, j, span, &mut scratch.piece);
+            self.piece_weights(p, j, span, &mut scratch.unit, &mut scratch.piece);
+            if !own {
+                add(&mut weights, &scratch.piece);
+            }
             let mut mean = std::mem::take(&mut scratch.mean);
             mean.clear();
             mean.resize(channels * n, 0.0);
@@ -122,6 +129,10 @@ impl Job<'_> {
                             }
                         }
                     }
+                }
+                if sub == 1 {
+                    mean.copy_from_slice(&scratch.product);
+                    continue;
                 }
                 for (m, v) in mean.iter_mut().zip(scratch.product.chunks_exact(sub)) {
                     *m += v.iter().sum::<f32>();
@@ -198,21 +209,25 @@ impl Job<'_> {
     }
 
     /// How much piece `p` counts at each pixel of `span`; pieces of one emitter are divided by their sum later.
-    fn piece_weights(&self, p: usize, j: usize, span: &Range<usize>, out: &mut Vec<f32>) {
+    fn piece_weights(
+        &self,
+        p: usize,
+        j: usize,
+        span: &Range<usize>,
+        unit: &mut Vec<f64>,
+        out: &mut Vec<f32>,
+    ) {
         let piece = &self.plan.pieces[p];
         out.clear();
-        match self.weights {
-            Weights::Area => out.resize(span.len(), piece.weight as f32),
-            Weights::Irradiance => {
-                let shape = kelir_scene::EmitterShape::Rectangle { size_m: piece.size_m };
-                // Relative to its share of the area over the squared distance, so that f32 keeps any scale.
-                let scale = piece.weight * piece.centre_m.z * piece.centre_m.z / shape.area_m2();
-                out.extend(span.clone().map(|i| {
-                    let at = pixel_m(&self.theatre.screen, self.view.size, i as f64, j as f64);
-                    (crate::irradiance::unit(&shape, piece.centre_m, at) * scale) as f32
-                }));
-            }
-        }
+        let Some(rows) = self.piece_units.get(p) else {
+            return out.resize(span.len(), piece.weight as f32);
+        };
+        // Relative to its share of the area over the squared distance, so that f32 keeps any scale.
+        let [w, h] = piece.size_m;
+        let scale = piece.weight * piece.centre_m.z * piece.centre_m.z / (w * h);
+        unit.resize(span.len(), 0.0);
+        rows.span(j, span.start, unit);
+        out.extend(unit.iter().map(|unit| (unit * scale) as f32));
     }
 
     /// Adds share · mean opacity of one look-up to its plane's own shadow.

@@ -1,0 +1,87 @@
+//! One axis of the map to a plane's texels, and how far a pixel reaches along it.
+
+use kelir_frame::{Pixel, View};
+use kelir_scene::Screen;
+
+use super::bounds::Range;
+
+/// One axis (x or y) of the map to one plane's texels, for one column or row of pixels, or one pixel.
+///
+/// Texel = anchor + floor(offset + …) with a sum that is zero at the middle of source and pixel. The anchor is the grid
+/// line nearest the box's centre, so that the offset is small wherever the result matters and f32 resolves even a box of
+/// 1e-6 texels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Axis {
+    /// The box's centre relative to the anchor, texels.
+    pub offset: f32,
+    /// Smallest value of the sum before the floor: the clear texel before the grid.
+    pub low: f32,
+    /// Largest value of the sum before the floor: the clear texel behind the grid.
+    pub high: f32,
+    /// The anchor in padded texels.
+    pub anchor: i32,
+    /// Every padded texel that a sample can fall on.
+    pub range: Range,
+}
+
+impl Axis {
+    /// The axis of a box `from..to` around `centre` (texels) on a grid of `texels`.
+    pub(crate) fn new(centre: f64, from: f64, to: f64, texels: usize) -> Self {
+        let anchor = centre.round().clamp(0.0, texels as f64);
+        let offset = centre - anchor;
+        // What f32 may add to the sum: a few roundings of its largest term.
+        let slack = 1e-6 * (offset.abs() + (to - centre).abs().max((centre - from).abs()));
+        // An infinite box is the whole grid; a NaN can only come from one.
+        let padded = |t: f64, otherwise: f64| {
+            let t = if t.is_nan() { otherwise } else { t };
+            t.floor().clamp(-1.0, texels as f64) as i32 + 1
+        };
+        Self {
+            offset: offset as f32,
+            low: (-1.0 - anchor) as f32,
+            high: (texels as f64 - anchor) as f32,
+            anchor: anchor as i32 + 1,
+            range: Range {
+                first: padded(from - slack, f64::NEG_INFINITY) as u32,
+                last: padded(to + slack, f64::INFINITY) as u32,
+            },
+        }
+    }
+}
+
+/// Sides of a pixel in metres, 0 where only its centre counts.
+pub(super) fn pixel_sides(screen: &Screen, view: &View) -> [f64; 2] {
+    match view.pixel {
+        Pixel::Area => [screen.width_m / view.size[0] as f64, screen.height_m / view.size[1] as f64],
+        Pixel::Centre => [0.0; 2],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box far smaller than a texel, on a grid line thousands of texels in: f32 still splits it where f64 does.
+    #[test]
+    fn tiny_boxes_split_where_they_should() {
+        let (line, width) = (4096.0, 1e-6);
+        let centre = line + 0.25 * width; // a quarter of the box is left of the line
+        let a = Axis::new(centre, centre - 0.5 * width, centre + 0.5 * width, 8192);
+        assert_eq!((a.range.first, a.range.last), (4096, 4097));
+        let left =
+            (0..1000).filter(|i| a.offset + width as f32 * ((*i as f32 + 0.5) / 1000.0 - 0.5) < 0.0).count();
+        assert!((left as i32 - 250).abs() <= 1, "{left}");
+    }
+
+    #[test]
+    fn far_boxes_fall_on_the_clear_border() {
+        let range = |centre: f64, half: f64| {
+            let r = Axis::new(centre, centre - half, centre + half, 16).range;
+            (r.first, r.last)
+        };
+        assert_eq!(range(-1e12, 3.0), (0, 0));
+        assert_eq!(range(1e12, 3.0), (17, 17));
+        assert_eq!(range(8.0, 1e30), (0, 17));
+        assert_eq!(range(8.0, f64::INFINITY), (0, 17));
+    }
+}
