@@ -23,6 +23,10 @@ impl Picture {
             Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
             _ => return Err("is not a PNG or JPEG file".to_owned()),
         };
+        if format == ImageFormat::Jpeg && !ends(bytes) {
+            // The decoder would make up the rest.
+            return Err("is cut off before its end; copy the file again".to_owned());
+        }
         let most = limits::IMAGE_SIDE;
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         let mut allowed = Limits::default();
@@ -37,10 +41,6 @@ impl Picture {
         }
         if width as usize > most || height as usize > most {
             return Err(format!("is {width} × {height} pixels; an image has at most {most} a side"));
-        }
-        if format == ImageFormat::Jpeg && !ends(bytes) {
-            // The decoder would make up the rest.
-            return Err("is cut off before its end; copy the file again".to_owned());
         }
         let orientation = decoder.orientation().map_err(unreadable)?;
         let profile = decoder.icc_profile().map_err(unreadable)?;

@@ -176,7 +176,7 @@ proptest! {
         let turned = shadow(&plane(&scene(&svg, Some(&sheet), &format!("pose = {{ arm = {degrees} }}"))));
         let texel_m = 0.6 / 128.0;
         for axis in 0..2 {
-            prop_assert!((rest.1[axis] - turned.1[axis]).abs() < 0.05 * texel_m, "{rest:?} {turned:?} in {svg}");
+            prop_assert!((rest.1[axis] - turned.1[axis]).abs() < 0.1 * texel_m, "{rest:?} {turned:?} in {svg}");
         }
     }
 }

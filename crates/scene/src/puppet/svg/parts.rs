@@ -34,6 +34,9 @@ pub(super) fn find<'a>(
     found: &Found,
     refuse: &mut dyn FnMut(String),
 ) -> Vec<Group> {
+    if parts.is_empty() {
+        return Vec::new();
+    }
     let root = document.root_element();
     let groups: Vec<Node> =
         root.descendants().filter(|n| n.has_tag_name((SVG, "g")) || n.has_tag_name("g")).collect();
