@@ -1,12 +1,17 @@
 //! Every number of a report, one at a time: what the tables show and the CSV holds.
 
+mod psychometric;
+mod scale;
+
+pub(crate) use psychometric::psychometric;
+pub(crate) use scale::of_scale;
+
 use crate::StudyReport;
 use crate::display;
 use crate::format::count;
 use kelir_stats::clustered::{Bootstrap, Coefficient, ShareMethod};
 use kelir_stats::inference::Interval;
-use kelir_stats::pairwise::ScaleIntervals;
-use kelir_study::report::{ALPHA, BlockReport, LEVEL, Parameter, Proportion, PsychometricReport};
+use kelir_study::report::{ALPHA, BlockReport, LEVEL, Proportion};
 use kelir_study::trials::Role;
 
 /// Whose answers a number is of.
@@ -346,108 +351,6 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         ] {
             all.push(row.number(name, ms, 0).of_n(times.n, "n: answers"));
         }
-    }
-    all
-}
-
-/// Every number of a psychometric function.
-pub(crate) fn psychometric(sample: Sample, block: &str, found: &PsychometricReport) -> Vec<Number> {
-    let unit = match &found.asked.unit {
-        Some(unit) => format!("{}, {unit}", found.asked.label),
-        None => found.asked.label.clone(),
-    };
-    let rows = Rows::of(sample, block, "psychometric function");
-    let mut all = Vec::new();
-    for point in &found.points {
-        all.extend(
-            point
-                .target
-                .as_ref()
-                .map(|share| rows.share(format!("share of target at {} (proportion)", point.level), share)),
-        );
-    }
-    let Some(fit) = &found.fit else { return all };
-    let posterior = |name: String, p: &Parameter| {
-        let interval = Interval { low: p.low, high: p.high, level: LEVEL };
-        let note =
-            if p.on_edge { "posterior interval; not bounded by the data" } else { "posterior interval" };
-        rows.number(name, p.value, 4).within(interval).noted(note)
-    };
-    all.push(posterior(format!("threshold, F = ½ ({unit})"), &fit.threshold));
-    all.push(posterior(format!("width, F = 5% to 95% ({unit})"), &fit.width));
-    all.push(posterior("lapse rate (proportion)".to_owned(), &fit.lapse));
-    all.push(posterior("overdispersion η (0 to 1)".to_owned(), &fit.eta));
-    if let Some(found) = &fit.threshold_by_participant {
-        let b = &found.bootstrap;
-        let row = rows.number(format!("threshold, maximum likelihood ({unit})"), b.estimate, 4);
-        let note = match found.at_bound {
-            0 => "interval from resampled participants".to_owned(),
-            n => format!(
-                "interval from resampled participants; {n} of {} resamples ended on the edge of the range searched",
-                b.replicates
-            ),
-        };
-        all.push(row.within(resampled(b)).noted(note));
-    }
-    for at in &fit.at {
-        let name = format!("level at a share of {} ({unit})", at.share);
-        // What no level reaches is beyond all of them.
-        let interval = Interval {
-            low: at.low.unwrap_or(f64::NEG_INFINITY),
-            high: at.high.unwrap_or(f64::INFINITY),
-            level: LEVEL,
-        };
-        let reached = if at.level.is_some() { "" } else { "; the curve itself never reaches this share" };
-        let note = match (at.low, at.high) {
-            (Some(_), Some(_)) => format!("posterior interval{reached}"),
-            (None, None) => format!("posterior interval: both ends are beyond every level{reached}"),
-            (None, _) => format!("posterior interval; its lower end is beyond every level{reached}"),
-            (_, None) => format!("posterior interval; its upper end is beyond every level{reached}"),
-        };
-        all.push(Number { value: at.level, ..rows.number(name, f64::NAN, 4) }.within(interval).noted(note));
-    }
-    if let Some(goodness) = &fit.goodness {
-        let row = rows.number("deviance", goodness.deviance, 3).with_p(goodness.p_simulated);
-        let row = row.resolved_to(Some(1.0 / (1.0 + goodness.simulations as f64)));
-        all.push(row.of_n(goodness.simulations as u64, "n: simulated observers"));
-    }
-    all
-}
-
-/// Every number of a scale.
-pub(crate) fn of_scale(sample: Sample, found: &ScaleIntervals) -> Vec<Number> {
-    let rows = Rows::of(sample, "", "scale");
-    let within = |low: Option<f64>, high: Option<f64>| {
-        low.zip(high).map(|(low, high)| Interval { low, high, level: found.level })
-    };
-    let observers = Some(found.observers as u64);
-    let mut all: Vec<Number> = found
-        .conditions
-        .iter()
-        .map(|c| {
-            let row = rows.number(format!("{} (JOD)", c.condition), c.jod, 3);
-            Number { n: observers, interval: within(c.low, c.high), ..row }
-        })
-        .collect();
-    for d in &found.differences {
-        let row = rows.named("scale, differences").number(format!("{} − {} (JOD)", d.a, d.b), d.jod, 3);
-        let row = Number { interval: within(d.low, d.high), ..row };
-        let patterns = if d.p_exact {
-            "all patterns of signs".to_owned()
-        } else {
-            count(found.flips as u64, "random pattern")
-        };
-        let floor = (!d.p_exact).then_some(d.p_smallest);
-        all.push(row.with_p(d.p).resolved_to(floor).noted(format!("sign flips of participants, {patterns}")));
-        let corrected = format!("{} − {}, p corrected by Holm for all differences (JOD)", d.a, d.b);
-        let row = rows.named("scale, differences").number(corrected, d.jod, 3).with_p(d.p_holm);
-        all.push(row);
-    }
-    let fit = &found.scale;
-    if fit.deviance_df > 0 {
-        let row =
-            rows.named("scale, fit").number(format!("deviance (df = {})", fit.deviance_df), fit.deviance, 3);
-        all.push(row.with_p(fit.deviance_p).noted("small p: one axis does not hold the choices"));
     }
     all
 }

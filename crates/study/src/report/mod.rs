@@ -4,6 +4,7 @@ mod choices;
 mod methods;
 mod psychometric;
 mod scaling;
+mod words;
 
 pub use choices::{ALPHA, ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, Proportion, REPLICATES};
 pub use psychometric::{

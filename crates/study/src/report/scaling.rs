@@ -11,7 +11,7 @@ use kelir_stats::pairwise::{
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::methods::count;
+use super::words::count;
 
 /// Above this many observers none is looked at alone: each costs a fit of all the others.
 const MOST_SCREENED: usize = 2000;

@@ -1,9 +1,10 @@
 //! What participants saw, in which order, and what decided it.
 
-use super::{Text, count};
+use super::Text;
 use crate::adaptive::{Adaptive, Track};
 use crate::definition::{Kind, StudyDefinition};
 use crate::display::Fit;
+use crate::report::words::count;
 use std::collections::BTreeMap;
 
 const LEVITT: &str = "Levitt, H. (1971). Transformed up-down methods in psychoacoustics. Journal of the Acoustical Society of America, 49(2B), 467–477.";
