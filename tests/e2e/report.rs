@@ -157,8 +157,9 @@ fn a_report_says_what_the_answers_say_in_every_form() {
     let embedded = download(&server, &format!("/api/v1/studies/{STUDY}/versions/current/report.md"));
     let markdown = write("report.md");
     let distributions = PAPER.map(|(block, ..)| format!("distribution-{block}"));
-    let figures =
-        ["choices", "scale", "response-times", "errors"].map(str::to_owned).into_iter().chain(distributions);
+    let papers = ["still-mc", "still-photo", "animation-mc"].map(|id| format!("equivalence-{id}"));
+    let figures = ["choices", "scale", "response-times", "errors"].map(str::to_owned).into_iter();
+    let figures = figures.chain(distributions).chain(papers);
     let figures: Vec<String> = figures.collect();
     assert_eq!(embedded.matches("data:image/svg+xml;base64,").count(), figures.len());
     for figure in figures {
