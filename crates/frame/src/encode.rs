@@ -151,7 +151,30 @@ pub fn exr(frame: &Frame, attributes: &Attributes) -> Result<Vec<u8>, RenderErro
         // The library leaves it to attributes to ask for this flag, but the format wants it of channels too.
         bytes[5] |= 0x04;
     }
+    sort_attributes(&mut bytes);
     Ok(bytes)
+}
+
+/// Puts the attributes of an EXR's one header in the order of their names: the library writes its own in an order that differs from run to run, and
+/// one frame is to be one file.
+fn sort_attributes(file: &mut [u8]) {
+    /// After the magic number and the version.
+    const HEADER: usize = 8;
+    let zero = |from: usize| file[from..].iter().position(|b| *b == 0).map(|k| from + k);
+    let mut attributes: Vec<&[u8]> = Vec::new();
+    let mut at = HEADER;
+    // Name, type and size of the value, then the value; an empty name ends them.
+    while file[at] != 0 {
+        let Some(size) = zero(at).and_then(|end| zero(end + 1)).map(|end| end + 1) else { return };
+        let Some(bytes) = file.get(size..).and_then(|rest| rest.first_chunk()) else { return };
+        let end = size + 4 + u32::from_le_bytes(*bytes) as usize;
+        let Some(attribute) = file.get(at..end).filter(|_| end < file.len()) else { return };
+        attributes.push(attribute);
+        at = end;
+    }
+    attributes.sort_unstable();
+    let sorted = attributes.concat();
+    file[HEADER..HEADER + sorted.len()].copy_from_slice(&sorted);
 }
 
 #[cfg(test)]
@@ -238,6 +261,7 @@ mod tests {
             scene_sha256: "ab".into(),
         };
         let bytes = exr(&frame(), &attributes).unwrap();
+        assert!((0..8).all(|_| exr(&frame(), &attributes).unwrap() == bytes), "one frame is one file");
         let image = read()
             .no_deep_data()
             .largest_resolution_level()
