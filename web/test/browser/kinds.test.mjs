@@ -69,8 +69,12 @@ test("a kind that the page doesn't know: it says so before anything is asked, or
 });
 
 test("a kind is added by its folder, and by nothing else", async (t) => {
-  const web = mkdtempSync(join(tmpdir(), "kelir-kind-"));
-  t.after(() => rmSync(web, { recursive: true }));
+  const root = mkdtempSync(join(tmpdir(), "kelir-kind-"));
+  t.after(() => rmSync(root, { recursive: true }));
+  const web = join(root, "web");
+  // The console's pages are laid out by the report's sheet.
+  const sheet = "crates/report/src/shared.css";
+  cpSync(join("..", sheet), join(root, sheet), { recursive: true });
   for (const part of ["participant", "console", "shared", "build.mjs", "browsers.json", "package.json"]) cpSync(part, join(web, part), { recursive: true });
   symlinkSync(resolve("node_modules"), join(web, "node_modules"));
   mkdirSync(join(web, "participant/trials/added"));
