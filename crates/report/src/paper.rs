@@ -86,19 +86,13 @@ fn beyond_the_test(paper: &Replication) -> Table {
     Table::new(caption, &columns, rows.collect())
 }
 
-/// Every so many of the bounds that were tried stand in the table; the figures have all.
-const TABLED: usize = 5;
-
 /// The tests of equivalence by their bound: the paper states none, and what the counts show depends on it.
 fn equivalence(paper: &Replication) -> Table {
-    let bounds = paper.comparisons.first().map_or(0, |c| c.equivalence.len());
-    let rows = (TABLED - 1..bounds).step_by(TABLED).map(|k| {
-        let of = |c: &Comparison| c.equivalence[k].tests.p;
-        let bound = paper.comparisons[0].equivalence[k].within;
-        let cells = paper.comparisons.iter().map(|c| Cell::number(p_value(of(c)), of(c)));
-        Row::Cells(
-            std::iter::once(Cell::number(format!("±{}", fixed(bound, 2)), bound)).chain(cells).collect(),
-        )
+    let bounds = paper.comparisons.first().into_iter().flat_map(Comparison::tabled);
+    let rows = bounds.enumerate().map(|(k, bound)| {
+        let p = paper.comparisons.iter().filter_map(|c| Some(c.tabled().nth(k)?.tests.p));
+        let bound = Cell::number(format!("±{}", fixed(bound.within, 2)), bound.within);
+        Row::Cells(std::iter::once(bound).chain(p.map(|p| Cell::number(p_value(p), p))).collect())
     });
     let columns: Vec<String> = std::iter::once("bound on the share#".to_owned())
         .chain(paper.comparisons.iter().map(|c| format!("{}#", c.title)))

@@ -58,6 +58,16 @@ pub struct Comparison {
     pub detectable: TPlan,
 }
 
+/// Every so many of the bounds that were tried stand in a table; a figure has all.
+const TABLED: usize = 5;
+
+impl Comparison {
+    /// The tests of equivalence that a table shows.
+    pub fn tabled(&self) -> impl Iterator<Item = &ShareEquivalence> {
+        self.equivalence.iter().skip(TABLED - 1).step_by(TABLED)
+    }
+}
+
 /// The bounds that are tried, in hundredths: up to the whole scale, which proves nothing, and no further.
 const BOUNDS: std::ops::Range<u32> = 1..50;
 

@@ -42,8 +42,8 @@ pub(crate) fn run(args: Args) -> Result<()> {
 fn comparison(c: &Comparison) -> String {
     let counts: Vec<String> = c.counts.iter().map(|(value, n)| format!("{n} chose {value}")).collect();
     let (t, e) = (&c.test, &c.effect);
-    let bounds = c.equivalence.iter().skip(4).step_by(5);
-    let equivalence: Vec<String> = bounds.map(|e| format!("±{:.2}: {:.4}", e.within, e.tests.p)).collect();
+    let equivalence: Vec<String> =
+        c.tabled().map(|e| format!("±{:.2}: {:.4}", e.within, e.tests.p)).collect();
     let agrees = if c.t_as_printed { "as printed" } else { "not what is printed" };
     let power: Vec<String> =
         c.power.iter().map(|plan| format!("{:.2} for d = {}", plan.power, plan.d)).collect();
