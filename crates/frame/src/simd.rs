@@ -190,7 +190,7 @@ mod tests {
             }
         }
         for word in ["sse9", "AVX2", "plain", " avx2"] {
-            let problem = named(word).unwrap_err();
+            let problem = named(word).expect_err(word);
             assert!(
                 problem.contains(&format!("KELIR_SIMD = {word:?}: must be one of baseline")),
                 "{problem}"
