@@ -92,7 +92,7 @@ impl Tracer {
     pub(crate) fn adapter(&self) -> String {
         match &self.gpu {
             Some(sampler) => sampler.gpu.adapter(),
-            None => format!("native {} threads {}", rayon::current_num_threads(), Isa::detect().name()),
+            None => Isa::native(),
         }
     }
 }

@@ -43,7 +43,7 @@ impl Sampler<'_> {
             Isa::Avx512 => return unsafe { self.sums_avx512::<C>(k, i, j, v0) },
             // SAFETY: detected on this machine.
             Isa::Avx2 => return unsafe { self.sums_avx2::<C>(k, i, j, v0) },
-            Isa::Plain => {}
+            Isa::Baseline => {}
         }
         self.sums_any::<C>(k, i, j, v0)
     }
