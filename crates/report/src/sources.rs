@@ -83,7 +83,7 @@ pub(crate) fn citation(report: &StudyReport) -> Section {
     ];
     let mut references = report.report.references.clone();
     if report.paper.is_some() {
-        references.push("Taylor, C., & Cameron, K. Rendering Virtual Shadow Puppet Theatres. Department of Computer Science, University of Bath. [The survey that this study repeats.]".to_owned());
+        references.push("Taylor, C., & Cameron, K. (n.d.). Rendering virtual shadow puppet theatres [Poster]. Department of Computer Science, University of Bath. [The survey that this study repeats.]".to_owned());
     }
     references.sort();
     if !references.is_empty() {
