@@ -2,7 +2,7 @@
 
 use crate::StudyReport;
 use crate::document::{Piece, Section, short};
-use crate::format::{count, fixed, list, p_equals, percent, significant};
+use crate::format::{count, fixed, list, p_equals, percent, resolved_p_equals, significant};
 use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER};
 
 /// The report's first section.
@@ -81,7 +81,8 @@ fn found(report: &StudyReport) -> Vec<String> {
     if report.is_empty() {
         return vec![report.standing.summary.clone()];
     }
-    let mut lines: Vec<String> = report.report.blocks.iter().map(of_block).collect();
+    let line = |block: &BlockReport| [of_block(block), pairs(block)].join(" ").trim_end().to_owned();
+    let mut lines: Vec<String> = report.report.blocks.iter().map(line).collect();
     if let Some(scale) = &report.report.scale {
         let mut order: Vec<_> = scale.conditions.iter().collect();
         order.sort_by(|a, b| b.jod.total_cmp(&a.jod));
@@ -158,6 +159,31 @@ fn of_block(block: &BlockReport) -> String {
         )
     } else {
         format!("{chose}: not significantly different from half the time, {test}.")
+    }
+}
+
+/// Whether the pairs behind a block's share may be taken together; nothing where it has no share of several.
+fn pairs(block: &BlockReport) -> String {
+    let shares = block.by_item.iter().filter_map(|item| Some(item.target.as_ref()?.proportion));
+    let (Some(pairs), Some(_)) = (&block.pairs, &block.analysis.proportion) else { return String::new() };
+    let (low, high) = shares.fold((1.0, 0.0), |(low, high), x| (f64::min(low, x), f64::max(high, x)));
+    let shares = if low == high {
+        format!("each {}", percent(low))
+    } else {
+        format!("{} to {}", percent(low), percent(high))
+    };
+    match &pairs.test {
+        None => format!("Whether its pairs differ ({shares}) cannot be tested."),
+        Some(test) => {
+            let p = resolved_p_equals(test.p, test.p_smallest);
+            if test.p < ALPHA {
+                format!(
+                    "Its pairs differ ({shares}; Cochran's Q, {p}): the share above is a mean of different ones."
+                )
+            } else {
+                format!("Its pairs are not shown to differ ({shares}; Cochran's Q, {p}).")
+            }
+        }
     }
 }
 

@@ -13,6 +13,7 @@ mod headline;
 mod html;
 mod markdown;
 mod numbers;
+mod order;
 mod paper;
 mod sections;
 mod sources;

@@ -1,8 +1,10 @@
 //! Every number of a report, one at a time: what the tables show and the CSV holds.
 
+mod order;
 mod psychometric;
 mod scale;
 
+pub(crate) use order::{of_block_order, of_order};
 pub(crate) use psychometric::psychometric;
 pub(crate) use scale::of_scale;
 
@@ -11,7 +13,7 @@ use crate::display;
 use crate::format::count;
 use kelir_stats::clustered::{Bootstrap, Coefficient, ShareMethod};
 use kelir_stats::inference::Interval;
-use kelir_study::report::{ALPHA, BlockReport, LEVEL, Proportion};
+use kelir_study::report::{ALPHA, BlockReport, LEVEL, PairsReport, Proportion};
 use kelir_study::trials::Role;
 
 /// Whose answers a number is of.
@@ -94,6 +96,10 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
             n: Some(consistency.observers),
             ..rows.whole("observers far from the others' scale (participants)", odd)
         });
+    }
+    if let Some(order) = &report.report.order {
+        all.extend(of_order(order));
+        all.extend(order.blocks.iter().flat_map(of_block_order));
     }
     for stimulus in &report.stimuli {
         let rows = Rows::of(Sample::Screened, "", "stimulus error");
@@ -209,6 +215,35 @@ fn resampled(found: &Bootstrap) -> Interval {
     Interval { low: found.low, high: found.high, level: found.level }
 }
 
+/// Whether pairs differ, and the model of participants and pairs.
+fn of_pairs(rows: Rows<'_>, pairs: &PairsReport) -> Vec<Number> {
+    let mut all = Vec::new();
+    if let Some(test) = &pairs.test {
+        let ways = if test.exact { "all ways" } else { "random ways" };
+        let note = format!(
+            "small p: pairs differ; {ways} to deal participants' choices; n: participants whose choices differ"
+        );
+        let row = rows.number(format!("Cochran's Q (df = {})", test.df), test.q, 3).with_p(test.p);
+        all.push(row.resolved_to(test.p_smallest).of_n(test.participants, &note));
+    }
+    if let Some(model) = &pairs.model {
+        let interval = Interval { low: model.low, high: model.high, level: LEVEL };
+        let row = rows.number("share over participants and pairs, mixed logit (proportion)", model.share, 3);
+        let note = format!(
+            "of participants and pairs as these are drawn from; t with {} degrees of freedom; n: choices",
+            model.df
+        );
+        all.push(row.within(interval).of_n(model.choices, &note));
+        all.push(rows.coefficient("log odds, participants and pairs random (logit)", &model.log_odds));
+        all.push(rows.number("SD of participants' log odds, beside pairs (logit)", model.participant_sd, 3));
+        all.push(
+            Number { n: Some(model.pairs), ..rows.number("SD of pairs' log odds (logit)", model.pair_sd, 3) }
+                .noted("n: pairs"),
+        );
+    }
+    all
+}
+
 /// Every number of one block but its psychometric function's.
 pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     let (summary, analysis) = (&block.summary, &block.analysis);
@@ -310,6 +345,10 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         let row =
             clustered.number("SD of participants' log odds (logit)", found.sigma, 3).with_p(found.sigma_p);
         all.push(row);
+    }
+
+    if let Some(pairs) = &block.pairs {
+        all.extend(of_pairs(rows("pairs beside each other"), pairs));
     }
 
     let power = rows("power");

@@ -4,7 +4,7 @@ use crate::blocks::{self, table};
 use crate::document::{Cell, Document, Piece, Row, Section, Table, short};
 use crate::format::{count, fixed, p_value, percent, share, significant};
 use crate::numbers::{Sample, of_scale};
-use crate::{StudyReport, display, figures, headline, paper, sources};
+use crate::{StudyReport, display, figures, headline, order, paper, sources};
 use kelir_study::report::BlockReport;
 use kelir_study::visits::Repeated;
 use kelir_study::{Condition, Kind, StudyDefinition};
@@ -38,6 +38,7 @@ pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
     sections.extend(report.report.blocks.iter().map(blocks::section));
     sections.extend(scale(report));
     sections.extend(times(report));
+    sections.extend(order::section(report));
     sections.extend(errors(report));
     sections.extend(both_ways(report));
     sections.extend(paper::section(report));

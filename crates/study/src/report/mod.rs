@@ -2,11 +2,15 @@
 
 mod choices;
 mod methods;
+mod order;
+mod pairs;
 mod psychometric;
 mod scaling;
 mod words;
 
 pub use choices::{ALPHA, ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, Proportion, REPLICATES};
+pub use order::{BlockOrder, FENCES, FirstTest, Leaning, OrderReport, Outliers};
+pub use pairs::PairsReport;
 pub use psychometric::{
     CurvePoint, Goodness, LevelPoint, Parameter, PsychometricFit, PsychometricReport, ThresholdAt,
 };
@@ -36,6 +40,8 @@ pub struct Report {
     pub scale_note: Option<String>,
     /// How far observers contradict that scale and themselves; null without one.
     pub consistency: Option<Consistency>,
+    /// Sides, order and speed; null without answers.
+    pub order: Option<OrderReport>,
     /// How the numbers that are there were got, paragraph by paragraph, as a methods section says it.
     pub methods: Vec<String>,
     /// What to cite for the methods that were used, in order of appearance.
@@ -57,6 +63,8 @@ pub struct BlockReport {
     pub analysis: ChoiceAnalysis,
     /// Each item alone, with all who answered it; empty for an adaptive block, which shows one item many times.
     pub by_item: Vec<ItemReport>,
+    /// Whether the pairs differ, and what holds of others; null with one pair, with levels, and where a procedure chose.
+    pub pairs: Option<PairsReport>,
     /// How the choices depend on the pairs' level; null where the study file asks for no psychometric function.
     pub psychometric: Option<PsychometricReport>,
     /// The role that stands first: left, or the first interval.
@@ -98,6 +106,19 @@ impl Report {
     /// Judges the answers to a study; excluded participants are to be left out by the caller. Resampling is seeded by the
     /// study's seed.
     pub fn of(study: &StudyDefinition, participants: &[&Participant]) -> Report {
+        let mut report = Report::claims(study, participants);
+        let analysed = blocks(study).filter(|(block, _)| !block.catch);
+        for (judged, (block, places)) in report.blocks.iter_mut().zip(analysed) {
+            let seen: Vec<&[Given]> = participants.iter().map(|p| p.answers_to(&places)).collect();
+            judged.pairs = pairs::of(block, &places, &seen, study.seed);
+        }
+        report.order = order::of(study, participants);
+        (report.methods, report.references) = methods::of(study, &report);
+        report
+    }
+
+    /// What a study is planned for, without what is only there to look at: the same numbers, sooner.
+    pub(crate) fn claims(study: &StudyDefinition, participants: &[&Participant]) -> Report {
         let summaries = summarise(study, participants);
         let analysed = || blocks(study).filter(|(block, _)| !block.catch);
         // What was planned is tested whether or not its t came out defined: an undefined one rejects nothing, and counts.
@@ -119,17 +140,16 @@ impl Report {
             Ok((scale, consistency)) => (Some(scale), Some(consistency), None),
             Err(note) => (None, None, Some(note)),
         };
-        let mut report = Report {
+        Report {
             blocks,
             scale,
             scale_pools: scaling::pooled(study),
             scale_note,
             consistency,
+            order: None,
             methods: Vec::new(),
             references: Vec::new(),
-        };
-        (report.methods, report.references) = methods::of(study, &report);
-        report
+        }
     }
 }
 
@@ -172,6 +192,7 @@ fn block_report(
         p_holm,
         analysis,
         by_item,
+        pairs: None,
         psychometric,
         first_role: block.trial.rules().roles()[0],
         first: Proportion::of(&firsts),

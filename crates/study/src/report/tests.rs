@@ -63,7 +63,7 @@ fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
     let scale = report.scale.unwrap();
     assert_eq!(scale.scale.conditions, ["mc", "pa", "photo"]);
     assert!(scale.scale.jod.iter().all(|x| x.abs() < 1e-9), "nobody was preferred");
-    assert_eq!((report.methods.len(), report.references.len()), (7, 20), "{:?}", report.methods);
+    assert_eq!((report.methods.len(), report.references.len()), (9, 24), "{:?}", report.methods);
     // Each participant answered two of the three comparisons: no triad is whole.
     let consistency = report.consistency.unwrap();
     assert_eq!(consistency.triads, Triads { triads: 0, circular: 0, consistence: None });
