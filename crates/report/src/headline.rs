@@ -3,7 +3,8 @@
 use crate::StudyReport;
 use crate::document::{Piece, Section, short};
 use crate::format::{count, fixed, list, p_equals, percent, resolved_p_equals, significant};
-use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER};
+use kelir_study::PrimaryTest;
+use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER, PrimaryReport};
 
 /// The report's first section.
 pub(crate) fn section(report: &StudyReport) -> Section {
@@ -17,7 +18,14 @@ pub(crate) fn section(report: &StudyReport) -> Section {
     }
     pieces.push(Piece::Heading("Asked".to_owned()));
     pieces.push(Piece::List(asked(report)));
-    pieces.push(Piece::Heading("Found".to_owned()));
+    match &report.report.primary {
+        Some(primary) if !report.is_empty() => {
+            pieces.push(Piece::Heading("Found, primary endpoint".to_owned()));
+            pieces.push(Piece::List(vec![decided(primary)]));
+            pieces.push(Piece::Heading("Found besides, secondary and exploratory".to_owned()));
+        }
+        _ => pieces.push(Piece::Heading("Found".to_owned())),
+    }
     pieces.push(Piece::List(found(report)));
     if !report.is_empty() {
         pieces.push(Piece::Heading("Not shown".to_owned()));
@@ -54,12 +62,41 @@ fn pooling(report: &StudyReport) -> String {
     format!("Answers to {} versions of the study are pooled: {}. {shown}", versions.len(), list(&versions))
 }
 
+/// What came of the primary endpoint.
+fn decided(primary: &PrimaryReport) -> String {
+    let test = primary.named.test;
+    let people = count(primary.participants, "participant");
+    let Some(p) = primary.p else {
+        return format!("{}: the {} of {people} is not defined.", primary.of, test.in_words());
+    };
+    let what = if test == PrimaryTest::Equivalence { "equivalence to a half" } else { "a difference" };
+    let verdict = if primary.found { "shown" } else { "not shown" };
+    let p = resolved_p_equals(p, primary.p_smallest);
+    format!(
+        "{}: {what} is {verdict} by the {} of {people}, {p}, uncorrected as the only primary test.",
+        primary.of,
+        test.in_words()
+    )
+}
+
+/// Which result was singled out beforehand.
+fn endpoint(report: &StudyReport) -> String {
+    match &report.report.primary {
+        None => "The study file names no primary endpoint: none of the results was singled out beforehand."
+            .to_owned(),
+        Some(primary) => {
+            format!("Primary endpoint: {}, by the {}.", primary.of, primary.named.test.in_words())
+        }
+    }
+}
+
 fn asked(report: &StudyReport) -> Vec<String> {
     let comparisons = report.report.blocks.iter().map(|block| {
         let [a, b] = &block.summary.conditions;
         format!("{}: {a} against {b}, {}.", block.summary.title, count(block.summary.items as u64, "pair"))
     });
-    std::iter::once(format!("“{}”", report.question)).chain(comparisons).collect()
+    let question = std::iter::once(format!("“{}”", report.question));
+    question.chain(comparisons).chain([endpoint(report)]).collect()
 }
 
 /// The other condition of a block.

@@ -70,6 +70,15 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
     ] {
         all.push(Rows::of(Sample::Screened, "", "participants").whole(statistic, value));
     }
+    if let Some(primary) = &report.report.primary {
+        let row = Rows::of(Sample::Screened, "", "primary endpoint");
+        let row = row.whole(
+            format!("{}, {} (participants)", primary.of, primary.named.test.in_words()),
+            primary.participants,
+        );
+        let row = Number { p: primary.p, ..row }.resolved_to(primary.p_smallest);
+        all.push(row.noted("named in the study file; p uncorrected"));
+    }
     let samples = [
         (Sample::Screened, Some(&report.report.blocks), report.report.scale.as_ref()),
         (Sample::Everybody, report.blocks_with_excluded.as_ref(), report.scale_with_excluded.as_ref()),

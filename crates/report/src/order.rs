@@ -36,7 +36,7 @@ pub(crate) fn section(report: &StudyReport) -> Option<Section> {
         pieces.extend((!lines.is_empty()).then_some(Piece::List(lines)));
         pieces.push(Piece::Table(table("", &numbers)));
     }
-    Some(Section::new("Sides, order and speed", pieces))
+    Some(Section::new("Sides, order and speed (exploratory)", pieces))
 }
 
 fn first(found: &FirstTest) -> String {

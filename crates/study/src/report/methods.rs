@@ -2,7 +2,9 @@
 
 mod design;
 
-use super::{ChoiceAnalysis, DETECTION_POWER, FENCES, LEVEL, POWER_EFFECTS, REPLICATES, Report, scaling};
+use super::{
+    ALPHA, ChoiceAnalysis, DETECTION_POWER, FENCES, LEVEL, POWER_EFFECTS, REPLICATES, Report, scaling,
+};
 use crate::definition::{GUESS, StudyDefinition};
 use kelir_stats::clustered::ShareMethod;
 use kelir_stats::pairwise::Estimator;
@@ -65,6 +67,7 @@ pub(super) fn of(study: &StudyDefinition, report: &Report) -> (Vec<String>, Vec<
     let mut text = Text::default();
     design::say(&mut text, study);
     text.say(screening(study), &[]);
+    text.say(endpoint(study), &[]);
     if any(report, |a| a.t_test.t.is_some()) {
         tests(&mut text, study, report);
     }
@@ -161,11 +164,36 @@ fn screening(study: &StudyDefinition) -> String {
     }
 }
 
+/// Which result was singled out beforehand.
+fn endpoint(study: &StudyDefinition) -> String {
+    let Some(named) = &study.primary else {
+        return "The study file names no primary endpoint: no result was singled out beforehand, and none is reported as if it had been.".to_owned();
+    };
+    let of = match (&named.block, &named.item, &named.compare) {
+        (Some(block), Some(item), _) => format!("item {item} of block {block}"),
+        (Some(block), None, _) => format!("block {block}"),
+        (None, _, Some([a, b])) => format!("{a} against {b}"),
+        (None, _, None) => String::new(),
+    };
+    let planned = match named.participants {
+        Some(n) => format!(", to be looked at when {n} participants are judged"),
+        None => "; the file does not say after how many participants it is to be looked at".to_owned(),
+    };
+    format!(
+        "The primary endpoint named in the study file is the {} of {of} at a level of {ALPHA}, uncorrected{planned}. Everything else is secondary, or exploratory where \
+         no test was planned.",
+        named.test.in_words()
+    )
+}
+
 fn tests(text: &mut Text, study: &StudyDefinition, report: &Report) {
-    let tested = report.blocks.iter().filter(|b| b.planned).count();
+    let is_primary = |id: &str| study.block(id).is_some_and(|block| study.is_primary_t_test(block));
+    let tested = report.blocks.iter().filter(|b| b.planned && !is_primary(&b.summary.id)).count();
+    let other =
+        if report.blocks.iter().any(|b| is_primary(&b.summary.id)) { "other planned" } else { "planned" };
     let holm = if tested > 1 {
         format!(
-            " P-values are also given corrected by Holm's method for the {tested} planned tests, whether or not each is defined: the k-th smallest is \
+            " P-values are also given corrected by Holm's method for the {tested} {other} tests, whether or not each is defined: the k-th smallest is \
              multiplied by {tested} + 1 − k, and is never below the one before nor above 1."
         )
     } else {

@@ -4,6 +4,7 @@ mod choices;
 mod methods;
 mod order;
 mod pairs;
+mod primary;
 mod psychometric;
 mod scaling;
 mod words;
@@ -11,6 +12,7 @@ mod words;
 pub use choices::{ALPHA, ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, Proportion, REPLICATES};
 pub use order::{BlockOrder, FENCES, FirstTest, Leaning, OrderReport, Outliers};
 pub use pairs::PairsReport;
+pub use primary::PrimaryReport;
 pub use psychometric::{
     CurvePoint, Goodness, LevelPoint, Parameter, PsychometricFit, PsychometricReport, ThresholdAt,
 };
@@ -30,6 +32,8 @@ use utoipa::ToSchema;
 /// A study judged.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Report {
+    /// What came of the primary endpoint; null where the study file names none.
+    pub primary: Option<PrimaryReport>,
     /// Each block, in study order.
     pub blocks: Vec<BlockReport>,
     /// All conditions on one axis, in JOD, where the blocks join them; with intervals and tests over participants.
@@ -56,8 +60,8 @@ pub struct BlockReport {
     pub summary: BlockSummary,
     /// Whether its t-test was planned: of an adaptive block it never is, of one with a psychometric function where the file says so.
     pub planned: bool,
-    /// p corrected by Holm's method for all planned tests, those that are not defined among them; null where p is, and of a test that was not
-    /// planned.
+    /// p corrected by Holm's method for all planned tests but the primary endpoint, those that are not defined among them; of the primary endpoint
+    /// p itself; null where p is, and of a test that was not planned.
     pub p_holm: Option<f64>,
     /// What is beside the paper's test.
     pub analysis: ChoiceAnalysis,
@@ -113,6 +117,7 @@ impl Report {
             judged.pairs = pairs::of(block, &places, &seen, study.seed);
         }
         report.order = order::of(study, participants);
+        report.primary = study.primary.as_ref().map(|named| primary::of(named, &report));
         (report.methods, report.references) = methods::of(study, &report);
         report
     }
@@ -124,15 +129,19 @@ impl Report {
         // What was planned is tested whether or not its t came out defined: an undefined one rejects nothing, and counts.
         let planned: Vec<f64> = analysed()
             .zip(&summaries)
-            .filter(|((block, _), _)| block.plans_t_test())
+            .filter(|((block, _), _)| block.plans_t_test() && !study.is_primary_t_test(block))
             .map(|(_, summary)| summary.p.unwrap_or(1.0))
             .collect();
         let mut corrected = holm(&planned).unwrap_or_default().into_iter();
         let blocks = analysed()
             .zip(summaries)
             .map(|((block, items), summary)| {
-                let corrected = if block.plans_t_test() { corrected.next() } else { None };
-                let p_holm = summary.p.and(corrected);
+                let p_holm = match block.plans_t_test() {
+                    // One test is a family of its own.
+                    true if study.is_primary_t_test(block) => summary.p,
+                    true => corrected.next().and_then(|p| summary.p.and(Some(p))),
+                    false => None,
+                };
                 block_report(study, block, &items, summary, p_holm, participants)
             })
             .collect();
@@ -141,6 +150,7 @@ impl Report {
             Err(note) => (None, None, Some(note)),
         };
         Report {
+            primary: None,
             blocks,
             scale,
             scale_pools: scaling::pooled(study),
