@@ -17,3 +17,4 @@ mod survey;
 mod trouble;
 mod trying;
 mod versions;
+mod widths;

@@ -9,6 +9,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use kelir_render::Isa;
 
 /// A platform for perceptual studies of shadows: render, ask, store, judge.
 #[derive(Parser)]
@@ -92,7 +93,18 @@ fn main() -> ExitCode {
     if matches!(command, Command::Render(_) | Command::Animate(_) | Command::Bench(_)) {
         without_device_select();
     }
-    let done = match command {
+    match Isa::forced().map_err(bad_input).and_then(|_| run(command)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // A closed terminal is no reason for another exit code.
+            let _ = writeln!(std::io::stderr(), "kelir: {}", said(&error));
+            if error.is::<BadInput>() { ExitCode::from(2) } else { ExitCode::FAILURE }
+        }
+    }
+}
+
+fn run(command: Command) -> anyhow::Result<()> {
+    match command {
         Command::Serve(args) => commands::serve::run(args),
         Command::Render(args) => commands::render::run(args),
         Command::Animate(args) => commands::animate::run(args),
@@ -107,14 +119,6 @@ fn main() -> ExitCode {
         Command::Chain(command) => commands::chain::run(command),
         Command::Power(args) => commands::power::run(&args),
         Command::Paper(args) => commands::paper::run(args),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // A closed terminal is no reason for another exit code.
-            let _ = writeln!(std::io::stderr(), "kelir: {}", said(&error));
-            if error.is::<BadInput>() { ExitCode::from(2) } else { ExitCode::FAILURE }
-        }
     }
 }
 

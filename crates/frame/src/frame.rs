@@ -210,7 +210,7 @@ pub trait Renderer<S>: Send {
         "cpu".into()
     }
 
-    /// What drew it, for provenance: "native 2 threads avx2" or the GPU adapter's name and driver.
+    /// What drew it, for provenance: [`crate::Isa::native`] or the GPU adapter's name and driver.
     fn adapter(&self) -> String;
 }
 

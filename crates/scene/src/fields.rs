@@ -105,7 +105,7 @@ fn albedo_image(node: &Node, name: &str, loader: &Loader) -> Option<LinearImage>
         Err(rule) => return node.refuse(rule),
     };
     let opaque = "an albedo image must be opaque: cloth has no alpha";
-    let rgb = if deep {
+    let rgb: Vec<_> = if deep {
         let image = picture.image.into_rgba16();
         if image.pixels().any(|p| p.0[3] != u16::MAX) {
             return node.refuse(opaque);
@@ -118,7 +118,7 @@ fn albedo_image(node: &Node, name: &str, loader: &Loader) -> Option<LinearImage>
         }
         image.pixels().map(|p| [p.0[0], p.0[1], p.0[2]].map(|c| linear[c as usize])).collect()
     };
-    Some(LinearImage { width, height, rgb })
+    Some(LinearImage::new(width, height, &rgb))
 }
 
 /// The lamp's position and its emitters, each as far as it is sound: where puppets may hang depends on the position alone.

@@ -247,7 +247,7 @@ fn check_light(albedo: &Albedo, emitters: &[Emitter], ambient: &Ambient, white: 
     let lit = |c: usize| dome[c] > 0.0 || emitters.iter().any(|e| e.radiance[c] > 0.0);
     let seen = |c: usize| match albedo {
         Albedo::Uniform(rgb) => rgb[c] > 0.0,
-        Albedo::Image(image) => image.rgb.iter().any(|p| p[c] > 0.0),
+        Albedo::Image(image) => image.channel(c).iter().any(|v| *v > 0.0),
     };
     if !(0..3).any(|c| lit(c) && seen(c)) {
         let rule = "white = \"auto\" needs light: lamp or cloth are black in every channel";

@@ -58,15 +58,30 @@ pub enum Albedo {
     Image(Arc<LinearImage>),
 }
 
-/// A linear RGB image, row-major, first row on top.
-#[derive(Clone, Debug)]
+/// A linear image.
+#[derive(Clone, Debug, PartialEq)]
 pub struct LinearImage {
     /// Pixels a row.
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// `width * height` linear RGB triples.
-    pub rgb: Vec<[f32; 3]>,
+    /// Planes of `width * height` values, row-major, first row on top: red, green and blue, or one where all pixels are grey.
+    pub planes: Vec<Vec<f32>>,
+}
+
+impl LinearImage {
+    /// Of `width * height` linear RGB triples.
+    pub fn new(width: usize, height: usize, rgb: &[[f32; 3]]) -> Self {
+        debug_assert_eq!(rgb.len(), width * height);
+        let grey = rgb.iter().all(|[r, g, b]| r == g && g == b);
+        let plane = |c: usize| rgb.iter().map(|pixel| pixel[c]).collect();
+        Self { width, height, planes: (0..if grey { 1 } else { 3 }).map(plane).collect() }
+    }
+
+    /// Channel `c` of 3.
+    pub fn channel(&self, c: usize) -> &[f32] {
+        &self.planes[c.min(self.planes.len() - 1)]
+    }
 }
 
 /// The bulb.

@@ -65,7 +65,7 @@ impl Weave {
                 *pixel = self.base.map(|base| (base * light).clamp(0.0, 1.0) as f32);
             }
         });
-        LinearImage { width, height, rgb }
+        LinearImage::new(width, height, &rgb)
     }
 
     /// Share of the base albedo at a pixel.

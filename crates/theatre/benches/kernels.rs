@@ -5,7 +5,7 @@ use divan::counter::ItemsCount;
 use kelir_theatre::kernels::{self, Kernel};
 
 fn main() {
-    eprintln!("Instruction set {}.", kelir_frame::Isa::detect().name());
+    eprintln!("Instruction set {}.", kelir_frame::Isa::provenance());
     divan::main();
 }
 

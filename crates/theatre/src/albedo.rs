@@ -1,5 +1,7 @@
 //! The screen's albedo on the output's pixel grid.
 
+use std::sync::Arc;
+
 use kelir_frame::{Pixel, View, multiversion};
 use kelir_scene::{Albedo, LinearImage, Screen};
 use rayon::prelude::*;
@@ -9,8 +11,8 @@ use rayon::prelude::*;
 pub enum PixelAlbedo {
     /// The same in every pixel.
     Uniform([f32; 3]),
-    /// Planes of `width * height`, row-major, first row on top: three, or one where the image is grey.
-    Image(Vec<Vec<f32>>),
+    /// An image of as many pixels; the cloth itself where its grid is theirs.
+    Image(Arc<LinearImage>),
 }
 
 impl PixelAlbedo {
@@ -18,7 +20,7 @@ impl PixelAlbedo {
     pub fn at(&self, c: usize, k: usize) -> f32 {
         match self {
             Self::Uniform(a) => a[c],
-            Self::Image(planes) => planes[c.min(planes.len() - 1)][k],
+            Self::Image(image) => image.channel(c)[k],
         }
     }
 
@@ -26,7 +28,7 @@ impl PixelAlbedo {
     pub fn is_grey(&self) -> bool {
         match self {
             Self::Uniform([r, g, b]) => r == g && g == b,
-            Self::Image(planes) => planes.len() == 1,
+            Self::Image(image) => image.planes.len() == 1,
         }
     }
 }
@@ -36,7 +38,8 @@ impl PixelAlbedo {
 pub fn on_grid(screen: &Screen, view: &View) -> PixelAlbedo {
     match &screen.albedo {
         Albedo::Uniform(a) => PixelAlbedo::Uniform(a.map(|v| v as f32)),
-        Albedo::Image(image) => PixelAlbedo::Image(resample(image, view)),
+        Albedo::Image(image) if [image.width, image.height] == view.size => PixelAlbedo::Image(image.clone()),
+        Albedo::Image(image) => PixelAlbedo::Image(Arc::new(resample(image, view))),
     }
 }
 
@@ -69,47 +72,44 @@ impl Columns {
         Self { weights: (0..most).flat_map(weight).collect(), first: cells.iter().map(|c| c.0).collect() }
     }
 
-    /// Adds `weight` times the means of channel `c` of a row of texels.
-    fn add(&self, row: &[[f32; 3]], c: usize, weight: f64, sums: &mut [f64]) {
-        add(&self.first, &self.weights, row, c, weight, sums);
+    /// Adds `weight` times the means of a row of texels.
+    fn add(&self, row: &[f32], weight: f64, sums: &mut [f64]) {
+        add(&self.first, &self.weights, row, weight, sums);
     }
 }
 
 #[inline(always)]
-fn add_generic(first: &[usize], weights: &[f64], row: &[[f32; 3]], c: usize, weight: f64, sums: &mut [f64]) {
+fn add_generic(first: &[usize], weights: &[f64], row: &[f32], weight: f64, sums: &mut [f64]) {
     for (k, weights) in weights.chunks_exact(first.len()).enumerate() {
         for ((sum, first), w) in sums.iter_mut().zip(first).zip(weights) {
-            let texel = row[(first + k).min(row.len() - 1)][c];
+            let texel = row[(first + k).min(row.len() - 1)];
             *sum += weight * w * f64::from(texel);
         }
     }
 }
-multiversion! { fn add(first: &[usize], weights: &[f64], row: &[[f32; 3]], c: usize, weight: f64, sums: &mut [f64]) = add_generic; }
+multiversion! { fn add(first: &[usize], weights: &[f64], row: &[f32], weight: f64, sums: &mut [f64]) = add_generic; }
 
-fn resample(image: &LinearImage, view: &View) -> Vec<Vec<f32>> {
+fn resample(image: &LinearImage, view: &View) -> LinearImage {
     let [w, h] = view.size;
     let columns = Columns::new(w, image.width, view.pixel);
     let rows: Vec<_> = (0..h).map(|j| cells(j, h, image.height, view.pixel)).collect();
-    let grey = image.rgb.par_chunks(1 << 14).all(|part| part.iter().all(|[r, g, b]| r == g && g == b));
-    let plane = |c: usize| {
+    let plane = |texels: &Vec<f32>| {
         let mut out = vec![0f32; w * h];
         out.par_chunks_mut(w).zip(&rows).for_each_init(Vec::new, |sums, (out, (y0, weights))| {
             sums.clear();
             sums.resize(w, 0f64);
             for (dy, weight) in weights.iter().enumerate() {
-                columns.add(&image.rgb[(y0 + dy) * image.width..][..image.width], c, *weight, sums);
+                columns.add(&texels[(y0 + dy) * image.width..][..image.width], *weight, sums);
             }
             out.iter_mut().zip(&*sums).for_each(|(out, sum)| *out = *sum as f32);
         });
         out
     };
-    (0..if grey { 1 } else { 3 }).map(plane).collect()
+    LinearImage { width: w, height: h, planes: image.planes.iter().map(plane).collect() }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
 
     /// Against sums over all texels, each weighed by its overlap with the pixel; one plane only where the image is grey.
@@ -118,8 +118,8 @@ mod tests {
         let source = [7usize, 5];
         for grey in [true, false] {
             let texel = |k: usize, c: usize| ((k * 31 + if grey { 0 } else { c * 17 }) % 23) as f32 / 23.0;
-            let rgb = (0..35).map(|k| [0, 1, 2].map(|c| texel(k, c))).collect();
-            let image = LinearImage { width: source[0], height: source[1], rgb };
+            let rgb: Vec<_> = (0..35).map(|k| [0, 1, 2].map(|c| texel(k, c))).collect();
+            let image = LinearImage::new(source[0], source[1], &rgb);
             let screen = Screen { width_m: 1.4, height_m: 1.0, albedo: Albedo::Image(Arc::new(image)) };
             for size in [[7, 5], [3, 2], [20, 14]] {
                 let overlap = |i: usize, d: usize, t: usize| {

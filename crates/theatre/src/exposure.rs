@@ -217,7 +217,7 @@ mod tests {
     fn woven(grain: u32, screen: &mut Screen) {
         let rgb =
             (0..40 * 25u32).map(|k| [0, 1, 2].map(|c| 0.6 + (k.wrapping_mul(grain + c) % 97) as f32 / 400.0));
-        screen.albedo = Albedo::Image(Arc::new(LinearImage { width: 40, height: 25, rgb: rgb.collect() }));
+        screen.albedo = Albedo::Image(Arc::new(LinearImage::new(40, 25, &rgb.collect::<Vec<_>>())));
     }
 
     proptest! {

@@ -72,7 +72,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
     let figures = command.figures().clone();
     measure(command)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
-    figures.note(&format!("\nMeasured with instruction set {} on {threads} threads.", Isa::detect().name()))
+    figures.note(&format!("\nMeasured with instruction set {} on {threads} threads.", Isa::provenance()))
 }
 
 fn measure(command: Command) -> Result<()> {

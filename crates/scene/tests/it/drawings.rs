@@ -254,7 +254,7 @@ fn orientation_is_applied() {
         let scene =
             parse(&SCENE.replace("albedo = 0.8", "albedo = { image = \"cloth.jpg\" }"), &files).unwrap();
         let kelir_scene::Albedo::Image(image) = scene.still().screen.albedo else { panic!("an image") };
-        let green = |x: usize, y: usize| image.rgb[y * image.width + x][1] > 0.5;
+        let green = |x: usize, y: usize| image.channel(1)[y * image.width + x] > 0.5;
         let (right, bottom) = (image.width - 3, image.height - 3);
         (image.width, [green(2, 2), green(right, 2), green(2, bottom), green(right, bottom)])
     };

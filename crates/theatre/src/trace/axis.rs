@@ -47,6 +47,39 @@ impl Axis {
             },
         }
     }
+
+    /// The anchor's place in texels.
+    pub(crate) fn line(&self) -> f64 {
+        f64::from(self.anchor - 1)
+    }
+}
+
+/// Places of one axis of one plane as whole numbers, relative to its anchor, whose sum's texel is a shift to the right.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fixed {
+    /// Units a texel, a power of two.
+    scale: f64,
+    /// Beyond it a box's middle is as good as there.
+    most: f64,
+    /// The texel is the sum shifted by so many bits.
+    pub shift: u32,
+}
+
+impl Fixed {
+    /// For boxes of `half` texels to either side.
+    pub(crate) fn new(half: f64) -> Self {
+        let half = half.max(1e-12);
+        // Outside the grid two texels are as far as any; a box smaller than a texel splits at its anchor or nowhere.
+        let most = if half < 0.25 { 2.0 * half } else { half + 2.0 };
+        let bits = (f64::from(1 << 30) / (most + half)).log2().floor();
+        // What is smaller than a texel in all 31 bits leaves its sign.
+        Self { scale: bits.exp2(), most, shift: (bits as u32).min(31) }
+    }
+
+    /// Texels as units.
+    pub(crate) fn of(&self, texels: f64) -> i32 {
+        (texels.clamp(-self.most, self.most) * self.scale).round() as i32
+    }
 }
 
 /// Sides of a pixel in metres, 0 where only its centre counts.
@@ -71,6 +104,33 @@ mod tests {
         let left =
             (0..1000).filter(|i| a.offset + width as f32 * ((*i as f32 + 0.5) / 1000.0 - 0.5) < 0.0).count();
         assert!((left as i32 - 250).abs() <= 1, "{left}");
+    }
+
+    /// The texel of a sum of whole numbers is that of the sum of places, from boxes of 1e-9 texels to whole masks.
+    #[test]
+    fn whole_numbers_split_where_they_should() {
+        for half in [0.0, 5e-10, 5e-7, 0.1, 0.24, 0.26, 3.0, 40.0, 5e4] {
+            let fixed = Fixed::new(half);
+            for offset in [-0.5, -0.3, -0.5 * half, -1e-3 * half, 0.0, 0.25 * half, 0.4, 0.5] {
+                // The anchor is the nearest line: half a texel at most.
+                let offset = f64::clamp(offset, -0.5, 0.5);
+                let differ = |k: &i32| {
+                    let t = half * (f64::from(*k) / 500.0 - 1.0 + 1e-4);
+                    let texel = fixed.of(offset).wrapping_add(fixed.of(t)) >> fixed.shift;
+                    texel != (offset + t).floor() as i32
+                        && (offset + t - (offset + t).round()).abs() > 2e-9 * half
+                };
+                assert_eq!((0..1000).filter(differ).count(), 0, "half {half}, offset {offset}, on no line");
+            }
+            // Off the grid, however far: on the clear border or beyond it.
+            let far = |offset: f64, t: f64| fixed.of(offset).wrapping_add(fixed.of(t)) >> fixed.shift;
+            for t in [-half, half] {
+                assert!(
+                    far(-1e12 - half, t) < 0 && far(1e12 + half, t) >= 0 && far(f64::NEG_INFINITY, t) < 0
+                );
+                assert_eq!(fixed.of(f64::NAN), 0);
+            }
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::bounds::Padded;
 use super::native::Sampler;
 use super::plan::Plan;
 use super::sobol::{Points, REPLICATES};
+use super::tables::Tables;
 use crate::albedo::PixelAlbedo;
 use crate::ambient;
 
@@ -27,6 +28,7 @@ pub(super) struct Estimator<'a> {
     pub radiance: Vec<[f64; 3]>,
     pub albedo: &'a PixelAlbedo,
     pub points: &'a Points,
+    pub tables: &'a Tables,
     pub skip: bool,
     pub layers: bool,
     /// Told of each row that is done.
@@ -163,6 +165,7 @@ impl Estimator<'_> {
             plan: self.plan,
             masks: self.masks,
             points: self.points,
+            tables: self.tables,
             planes: job.first as usize..job.end as usize,
         };
         let (k, i, j) = (job.emitter as usize, job.x as usize, job.y as usize);
@@ -177,9 +180,7 @@ impl Estimator<'_> {
         let emitters = self.plan.emitters.len();
         let extra = if self.layers { 3 + emitters * self.plan.channels } else { 0 };
         let mut row = Row { values: vec![0.0; width * (3 + extra)], ..Row::default() };
-        // With several planes the paper's ambient light needs each plane's own visibility too.
-        let alone = matches!(self.theatre.ambient, Ambient::Paper { .. }) && self.masks.len() > 1;
-        let subsets = 1 + if alone { self.masks.len() } else { 0 };
+        let subsets = 1 + if alone(self.theatre) { self.masks.len() } else { 0 };
         let (mut estimates, mut lights) =
             (Vec::with_capacity(emitters * subsets), Vec::with_capacity(subsets));
         for i in 0..width {
@@ -325,6 +326,11 @@ impl Estimator<'_> {
             _ => direct,
         }
     }
+}
+
+/// Whether each plane's own visibility is asked for, too: with several planes the paper's ambient light needs it.
+pub(super) fn alone(theatre: &Theatre) -> bool {
+    matches!(theatre.ambient, Ambient::Paper { .. }) && theatre.planes.len() > 1
 }
 
 /// Standard error of the mean of independent replicates; exactly 0 where all are equal.

@@ -12,12 +12,16 @@ use super::bounds::Padded;
 use super::estimate::Job;
 use super::plan::{Plan, PlaneMap, Shape};
 use super::sobol::{self, Points, REPLICATES};
+use super::tables::Tables;
 
 /// The shader's text.
 pub(crate) const WGSL: &str = include_str!("trace.wgsl");
 
 /// Invocations a workgroup, as in the shader.
 pub(super) const WORKGROUP: u32 = 64;
+
+/// A source without tables, as in the shader.
+pub(super) const NONE: u32 = u32::MAX;
 
 /// Jobs drawn in one submission: 64 MiB of coloured sums.
 const JOBS: usize = 1 << 18;
@@ -34,6 +38,7 @@ pub(super) struct Params {
     pub area: u32,
     pub channels: u32,
     pub scrambled: u32,
+    pub variants: u32,
 }
 
 #[repr(C)]
@@ -43,6 +48,7 @@ pub(super) struct GpuAxis {
     pub low: f32,
     pub high: f32,
     pub anchor: i32,
+    pub middle: i32,
 }
 
 #[repr(C)]
@@ -53,6 +59,7 @@ pub(super) struct Emitter {
     pub pixel_x: f32,
     pub pixel_y: f32,
     pub shape: u32,
+    pub table: u32,
 }
 
 #[repr(C)]
@@ -73,6 +80,8 @@ pub(super) struct Map {
     pub normal_x: f32,
     pub normal_y: f32,
     pub unit: f32,
+    pub shift_x: u32,
+    pub shift_y: u32,
 }
 
 /// What one job adds to a tilted plane.
@@ -90,7 +99,7 @@ pub(super) struct GpuSeen {
 
 impl From<&Axis> for GpuAxis {
     fn from(a: &Axis) -> Self {
-        Self { offset: a.offset, low: a.low, high: a.high, anchor: a.anchor }
+        Self { offset: a.offset, low: a.low, high: a.high, anchor: a.anchor, middle: 0 }
     }
 }
 
@@ -100,13 +109,13 @@ pub(crate) struct Sampler {
     pipeline: wgpu::ComputePipeline,
     masks: Option<(Vec<u64>, wgpu::Texture)>,
     output: Option<(u64, Output)>,
-    points: Option<(u64, usize, wgpu::Buffer)>,
 }
 
 /// What one frame's jobs share on the device.
 pub(crate) struct Scene {
     plan: Params,
     channels: usize,
+    points: wgpu::Buffer,
     emitters: wgpu::Buffer,
     maps: wgpu::Buffer,
     axes: wgpu::Buffer,
@@ -119,7 +128,7 @@ impl Sampler {
         let module = gpu.module("trace.wgsl", wgsl);
         let pipeline = gpu.pipeline(&module, "sample");
         gpu.check()?;
-        Ok(Self { gpu, pipeline, masks: None, output: None, points: None })
+        Ok(Self { gpu, pipeline, masks: None, output: None })
     }
 
     /// Uploads what changed; `ids` are the masks' ids.
@@ -129,24 +138,27 @@ impl Sampler {
         ids: &[u64],
         masks: &[Arc<Padded>],
         points: &Points,
+        tables: &Tables,
     ) -> Result<Scene, RenderError> {
         if self.masks.as_ref().is_none_or(|(old, _)| old != ids) {
             self.masks = Some((ids.to_vec(), self.texture(masks)?));
         }
-        let (seed, samples) = (points.seed, points.samples);
-        if self.points.as_ref().is_none_or(|(s, n, _)| (*s, *n) != (seed, samples)) {
-            self.points = Some((seed, samples, self.gpu.storage("points", &points.dims.concat())));
-        }
+        let mut words = points.dims.concat();
         let layer = |p: usize| masks[..p].iter().map(|m| m.channels as u32).sum();
         let (mut emitters, mut maps, mut axes, mut tangents) = (vec![], vec![], vec![], vec![]);
-        for e in &plan.emitters {
+        for (k, e) in plan.emitters.iter().enumerate() {
+            let subsets = tables.source(k);
+            let table = subsets.map_or(NONE, |_| words.len() as u32);
+            for subset in subsets.unwrap_or_default() {
+                words.extend(subset.lanes.as_flattened());
+            }
             let ([side_x, side_y], [pixel_x, pixel_y]) = (e.emitter, e.pixel);
             let shape = match e.shape {
                 Shape::Rectangle => 0,
                 Shape::Disk => 1,
                 Shape::Dome => 2,
             };
-            emitters.push(Emitter { side_x, side_y, pixel_x, pixel_y, shape });
+            emitters.push(Emitter { side_x, side_y, pixel_x, pixel_y, shape, table });
             tangents.extend(e.columns.iter().chain(&e.rows).copied());
             for (p, map) in e.planes.iter().enumerate() {
                 let (layer, channels, unit) = (layer(p), masks[p].channels as u32, masks[p].unit);
@@ -158,8 +170,11 @@ impl Sampler {
                     Map { emitter_x, emitter_y, pixel_x, pixel_y, layer, channels, unit, ..Map::default() };
                 match map {
                     PlaneMap::Parallel(map) => {
-                        maps.push(map_of);
-                        axes.extend(map.columns.iter().chain(&map.rows).map(GpuAxis::from));
+                        let [shift_x, shift_y] = map.fixed.map(|fixed| fixed.shift);
+                        maps.push(Map { shift_x, shift_y, ..map_of });
+                        let middles = map.middles.iter().flatten();
+                        let all = map.columns.iter().chain(&map.rows).zip(middles);
+                        axes.extend(all.map(|(a, &middle)| GpuAxis { middle, ..a.into() }));
                     }
                     PlaneMap::Tilted(map) => {
                         maps.push(Map {
@@ -181,17 +196,19 @@ impl Sampler {
         let params = Params {
             width: plan.size[0] as u32,
             height: plan.size[1] as u32,
-            samples: samples as u32,
+            samples: points.samples as u32,
             jobs: 0,
             planes: masks.len() as u32,
-            seed: sobol::fold(seed),
+            seed: sobol::fold(points.seed),
             area: u32::from(plan.area),
             channels: plan.channels as u32,
             scrambled: u32::from(points.scrambled),
+            variants: tables.variants as u32,
         };
         let scene = Scene {
             plan: params,
             channels: plan.channels,
+            points: self.gpu.storage("points", &words),
             emitters: self.gpu.storage("emitters", &emitters),
             maps: self.gpu.storage("maps", &maps),
             axes: self.gpu.storage("axes", &axes),
@@ -264,9 +281,7 @@ impl Sampler {
             if self.output.as_ref().is_none_or(|(size, _)| *size < bytes) {
                 self.output = Some((bytes, self.gpu.output("sums", bytes)));
             }
-            let (Some((_, texture)), Some((_, _, points)), Some((_, output))) =
-                (&self.masks, &self.points, &self.output)
-            else {
+            let (Some((_, texture)), Some((_, output))) = (&self.masks, &self.output) else {
                 unreachable!("a scene exists only after prepare")
             };
             let params = Params { jobs: jobs.len() as u32, ..scene.plan };
@@ -281,7 +296,7 @@ impl Sampler {
                 &[
                     params.as_entire_binding(),
                     list.as_entire_binding(),
-                    points.as_entire_binding(),
+                    scene.points.as_entire_binding(),
                     scene.emitters.as_entire_binding(),
                     scene.maps.as_entire_binding(),
                     scene.axes.as_entire_binding(),

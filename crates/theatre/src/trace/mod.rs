@@ -20,6 +20,7 @@ pub(crate) mod gpu;
 mod native;
 mod plan;
 pub(crate) mod sobol;
+mod tables;
 mod tilted;
 
 use std::collections::HashMap;
@@ -35,6 +36,7 @@ use bounds::Padded;
 use estimate::Estimator;
 pub(crate) use estimate::Row;
 use sobol::{Points, REPLICATES};
+use tables::Tables;
 
 /// Keeps masks and E⁰ between frames.
 pub(crate) struct Tracer {
@@ -90,7 +92,7 @@ impl Tracer {
     pub(crate) fn adapter(&self) -> String {
         match &self.gpu {
             Some(sampler) => sampler.gpu.adapter(),
-            None => format!("native {} threads {}", rayon::current_num_threads(), Isa::detect().name()),
+            None => Isa::native(),
         }
     }
 }
@@ -112,6 +114,7 @@ pub(crate) struct Trace<'a> {
 impl Trace<'_> {
     /// The given rows with these points.
     pub(crate) fn rows(&mut self, points: &Points, rows: &[usize]) -> Result<Vec<Row>, RenderError> {
+        let tables = Tables::new(&self.plan, points, estimate::alone(self.theatre));
         let estimator = Estimator {
             theatre: self.theatre,
             plan: &self.plan,
@@ -121,13 +124,14 @@ impl Trace<'_> {
             radiance: sources(self.theatre).map(|(_, radiance)| radiance).collect(),
             albedo: &self.albedo,
             points,
+            tables: &tables,
             skip: self.view.skip,
             layers: self.visibilities,
             meter: self.meter,
         };
         let Some(gpu) = &mut self.gpu else { return Ok(estimator.rows(rows)) };
         let ids: Vec<_> = self.theatre.planes.iter().map(|p| p.mask.id).collect();
-        let scene = gpu.prepare(&self.plan, &ids, &self.masks, points)?;
+        let scene = gpu.prepare(&self.plan, &ids, &self.masks, points, &tables)?;
         estimator.rows_by(rows, |jobs| gpu.run(&self.plan, &scene, jobs))
     }
 
@@ -191,8 +195,10 @@ pub(crate) fn sampler(theatre: Theatre, view: &View, spp: u32) -> impl FnMut(usi
     let masks: Vec<_> = theatre.planes.iter().map(|p| Arc::new(Padded::new(&p.mask))).collect();
     let plan = plan::Plan::new(&theatre, view, &masks, false).expect("a view of the screen's aspect");
     let points = Points::new(1, (spp as usize / REPLICATES).max(1));
+    let tables = Tables::new(&plan, &points, false);
     move |i, j| {
-        let sampler = native::Sampler { plan: &plan, masks: &masks, points: &points, planes: 0..masks.len() };
+        let (planes, masks, plan) = (0..masks.len(), &masks, &plan);
+        let sampler = native::Sampler { plan, masks, points: &points, planes, tables: &tables };
         std::hint::black_box(sampler.sums::<1>(0, i, j, [0.0]));
     }
 }

@@ -4,8 +4,9 @@ use kelir_frame::Isa;
 
 use super::axis::Axis;
 use super::bounds::Padded;
-use super::plan::{EmitterPlan, Plan, PlaneMap, Shape};
+use super::plan::{EmitterPlan, Parallel, Plan, PlaneMap, Shape};
 use super::sobol::{self, Points, REPLICATES};
+use super::tables::{self, Side, Tables};
 use super::tilted::{Seen, Tilted};
 
 /// f32 sums of this many steps are added to f64 ones: rounding stays below 1e-6 however many points.
@@ -26,6 +27,8 @@ pub(super) struct Sampler<'a> {
     pub points: &'a Points,
     /// Which planes the light passes.
     pub planes: std::ops::Range<usize>,
+    /// Where the points fall, for the sources that have it ready.
+    pub tables: &'a Tables,
 }
 
 impl Sampler<'_> {
@@ -40,7 +43,7 @@ impl Sampler<'_> {
             Isa::Avx512 => return unsafe { self.sums_avx512::<C>(k, i, j, v0) },
             // SAFETY: detected on this machine.
             Isa::Avx2 => return unsafe { self.sums_avx2::<C>(k, i, j, v0) },
-            Isa::Plain => {}
+            Isa::Baseline => {}
         }
         self.sums_any::<C>(k, i, j, v0)
     }
@@ -59,16 +62,66 @@ impl Sampler<'_> {
 
     #[inline(always)]
     pub(super) fn sums_any<const C: usize>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
-        match self.plan.area {
-            true => self.pixel::<C, true>(k, i, j, v0),
-            false => self.pixel::<C, false>(k, i, j, v0),
+        let key = sobol::stream(sobol::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);
+        match (self.tables.sides(k, &self.planes, key), self.plan.area) {
+            (Some(sides), _) => self.tabled::<C>(k, [i, j], sides, v0),
+            (None, true) => self.pixel::<C, true>(k, i, j, key, v0),
+            (None, false) => self.pixel::<C, false>(k, i, j, key, v0),
         }
     }
 
+    /// [`Self::sums`] where the points' places are known already.
     #[inline(always)]
-    fn pixel<const C: usize, const AREA: bool>(&self, k: usize, i: usize, j: usize, v0: [f32; C]) -> Sums<C> {
+    fn tabled<const C: usize>(&self, k: usize, pixel: [usize; 2], sides: [Side; 2], v0: [f32; C]) -> Sums<C> {
         let emitter = &self.plan.emitters[k];
-        let key = sobol::stream(sobol::fold(self.points.seed), (j * self.plan.size[0] + i) as u32, k as u32);
+        let middle = [emitter.columns[pixel[0]], emitter.rows[pixel[1]]];
+        let planes = emitter.planes[self.planes.clone()].iter().zip(&self.masks[self.planes.clone()]);
+        let samples = self.points.samples;
+        let mut sums = [[0f64; REPLICATES]; C];
+        let mut n = 0;
+        while n < samples {
+            let steps = FLUSH.min(samples - n);
+            let mut seen = [[[1f32; REPLICATES]; C]; FLUSH];
+            for (plane, (map, mask)) in planes.clone().enumerate() {
+                let PlaneMap::Parallel(map) = map else { unreachable!("tables are of parallel planes") };
+                let places = sides.each_ref().map(|side| &side.places[plane * samples + n..][..steps]);
+                map.look_up::<C>(mask, pixel, places, &mut seen[..steps]);
+            }
+            let mut part = [[0f32; REPLICATES]; C];
+            let [x, y] = sides.each_ref().map(|side| &side.tangents[n..][..steps]);
+            for ((seen, x), y) in seen.iter().zip(x).zip(y) {
+                let mut weight = [0f32; REPLICATES];
+                for r in 0..REPLICATES {
+                    let (x, y) = (middle[0] - f32::from_bits(x[r]), middle[1] - f32::from_bits(y[r]));
+                    let w = 1.0 + (x * x + y * y);
+                    weight[r] = 1.0 / (w * w);
+                }
+                for c in 0..C {
+                    for r in 0..REPLICATES {
+                        part[c][r] += (seen[c][r] - v0[c]) * weight[r];
+                    }
+                }
+            }
+            for c in 0..C {
+                for r in 0..REPLICATES {
+                    sums[c][r] += f64::from(part[c][r]);
+                }
+            }
+            n += steps;
+        }
+        sums
+    }
+
+    #[inline(always)]
+    fn pixel<const C: usize, const AREA: bool>(
+        &self,
+        k: usize,
+        i: usize,
+        j: usize,
+        key: u32,
+        v0: [f32; C],
+    ) -> Sums<C> {
+        let emitter = &self.plan.emitters[k];
         let mut shifts = [[0; REPLICATES]; sobol::DIMENSIONS];
         for (d, shifts) in shifts.iter_mut().enumerate() {
             for (r, shift) in shifts.iter_mut().enumerate() {
@@ -84,14 +137,6 @@ impl Sampler<'_> {
                 PlaneMap::Tilted(map) => Some(map.seen(i, j)),
             })
             .collect();
-        let windows = match planes.first() {
-            Some(PlaneMap::Parallel(map))
-                if AREA && emitter.shape == Shape::Rectangle && self.points.scrambled =>
-            {
-                Some([0, 1].map(|d| Window::new(map.emitter[d], map.pixel[d])))
-            }
-            _ => None,
-        };
         let mut sums = [[0f64; REPLICATES]; C];
         let mut n = 0;
         while n < self.points.samples {
@@ -101,7 +146,7 @@ impl Sampler<'_> {
             let steps = ux[n..end].iter().zip(&uy[n..end]).zip(&vx[n..end]).zip(&vy[n..end]);
             for (((ux, uy), vx), vy) in steps {
                 let mut u = [unit(ux, &shifts[0]), unit(uy, &shifts[1])];
-                let mut v = match AREA {
+                let v = match AREA {
                     true => [unit(vx, &shifts[2]), unit(vy, &shifts[3])],
                     false => [[0.0; REPLICATES]; 2],
                 };
@@ -110,14 +155,7 @@ impl Sampler<'_> {
                     Shape::Disk => u = disk(&u),
                     Shape::Dome => u = tangents(&disk(&u)),
                 }
-                let mut t = [[0.0; REPLICATES]; 2];
-                if let Some(windows) = &windows {
-                    for d in 0..2 {
-                        windows[d].split(&mut u[d], &mut v[d], &mut t[d]);
-                    }
-                }
-                let first = windows.is_some().then_some(&t);
-                let seen = self.visibility::<C, AREA>(emitter, &tilted, first, [i, j], &u, &v);
+                let seen = self.visibility::<C, AREA>(emitter, &tilted, [i, j], &u, &v);
                 let weight = match emitter.shape {
                     Shape::Dome => [1.0; REPLICATES],
                     _ => weight::<AREA>(emitter, i, j, &u, &v),
@@ -144,7 +182,6 @@ impl Sampler<'_> {
         &self,
         emitter: &EmitterPlan,
         tilted: &[Seen],
-        mut first: Option<&[Lanes; 2]>,
         [i, j]: [usize; 2],
         u: &[Lanes; 2],
         v: &[Lanes; 2],
@@ -152,15 +189,12 @@ impl Sampler<'_> {
         let mut seen = [[1f32; REPLICATES]; C];
         let mut tilted = tilted;
         for (map, mask) in emitter.planes[self.planes.clone()].iter().zip(&self.masks[self.planes.clone()]) {
-            let [x, y] = match (map, first.take()) {
-                (PlaneMap::Parallel(map), Some(t)) => {
-                    [placed(&map.columns[i], &t[0]), placed(&map.rows[j], &t[1])]
-                }
-                (PlaneMap::Parallel(map), None) => [
+            let [x, y] = match map {
+                PlaneMap::Parallel(map) => [
                     texels::<AREA>(&map.columns[i], map.emitter[0], map.pixel[0], &u[0], &v[0]),
                     texels::<AREA>(&map.rows[j], map.emitter[1], map.pixel[1], &u[1], &v[1]),
                 ],
-                (PlaneMap::Tilted(map), _) => {
+                PlaneMap::Tilted(map) => {
                     let (seen, others) = tilted.split_first().expect("one a tilted plane");
                     tilted = others;
                     tilted_texels(map, seen, u, v)
@@ -181,6 +215,41 @@ impl Sampler<'_> {
             }
         }
         seen
+    }
+}
+
+impl Parallel {
+    /// Multiplies into `seen` what the plane lets through at the places of some steps, as seen from a pixel.
+    #[inline(always)]
+    fn look_up<const C: usize>(
+        &self,
+        mask: &Padded,
+        [i, j]: [usize; 2],
+        [x, y]: [&[tables::Lanes]; 2],
+        seen: &mut [[Lanes; C]],
+    ) {
+        let (column, row) = (self.middles[0][i], self.middles[1][j]);
+        let (anchor_x, anchor_y) = (self.columns[i].anchor, self.rows[j].anchor);
+        let (shift_x, shift_y) = (self.fixed[0].shift, self.fixed[1].shift);
+        let (last_x, last_y) = (mask.stride as i32 - 1, mask.rows as i32 - 1);
+        let texels = mask.stride * mask.rows;
+        for ((x, y), seen) in x.iter().zip(y).zip(seen) {
+            let mut at = [0u32; REPLICATES];
+            for r in 0..REPLICATES {
+                let x = ((x[r] as i32).wrapping_add(column) >> shift_x).wrapping_add(anchor_x);
+                let y = ((y[r] as i32).wrapping_add(row) >> shift_y).wrapping_add(anchor_y);
+                let (x, y) = (x.max(0).min(last_x), y.max(0).min(last_y));
+                at[r] = (y as u32).wrapping_mul(mask.stride as u32).wrapping_add(x as u32);
+            }
+            for (c, seen) in seen.iter_mut().enumerate() {
+                let plane = if c < mask.channels { c } else { 0 } * texels;
+                // SAFETY: both texels are clamped to the padded grid.
+                let code = unsafe { gather(&mask.codes[plane..plane + texels], &at) };
+                for r in 0..REPLICATES {
+                    seen[r] *= f32::from(code[r]) * mask.unit;
+                }
+            }
+        }
     }
 }
 
@@ -216,16 +285,6 @@ fn texels<const AREA: bool>(
     out
 }
 
-/// Padded texels of places that are known relative to the box's centre.
-#[inline(always)]
-fn placed(axis: &Axis, t: &Lanes) -> [u32; REPLICATES] {
-    let mut out = [0; REPLICATES];
-    for r in 0..REPLICATES {
-        out[r] = texel(axis, axis.offset + t[r]);
-    }
-    out
-}
-
 /// The codes at sixteen places. Safety: each place is one of `codes`.
 #[inline(always)]
 unsafe fn gather(codes: &[u16], at: &[u32; REPLICATES]) -> [u16; REPLICATES] {
@@ -248,60 +307,6 @@ fn texel(axis: &Axis, t: f32) -> u32 {
     // Towards −∞, without the library's floor.
     let floor = whole.wrapping_sub(i32::from(whole as f32 > t));
     floor.wrapping_add(axis.anchor) as u32
-}
-
-/// One axis of box ⊛ pixel: the trapezoid over which t = emitter · u + pixel · v is spread.
-///
-/// What a plane lets through depends on t alone, so t takes one well stratified coordinate, by the inverse of the
-/// trapezoid's distribution, and the other coordinate chooses among the (u, v) that have this t: together they are
-/// uniform over emitter and pixel, as they were.
-struct Window {
-    emitter: f32,
-    pixel: f32,
-    /// The longer of both, half of where the top ends, half of where the slopes end, and twice their product.
-    long: f32,
-    flat: f32,
-    half: f32,
-    twice: f32,
-    per_emitter: f32,
-    per_pixel: f32,
-}
-
-impl Window {
-    fn new(emitter: f32, pixel: f32) -> Self {
-        Self {
-            emitter,
-            pixel,
-            long: emitter.max(pixel),
-            flat: 0.5 * (emitter - pixel).abs(),
-            half: 0.5 * (emitter + pixel),
-            twice: 2.0 * emitter * pixel,
-            per_emitter: 1.0 / emitter,
-            per_pixel: 1.0 / pixel,
-        }
-    }
-
-    /// `u` and `v` in [−½, ½) are independent coordinates on entry, and the sample's on return, with its `t`.
-    #[inline(always)]
-    fn split(&self, u: &mut Lanes, v: &mut Lanes, t: &mut Lanes) {
-        for r in 0..REPLICATES {
-            let (share, side) = (u[r].abs(), v[r]);
-            let top = share * self.long;
-            let slope = self.half - (self.twice * (0.5 - share)).sqrt();
-            let distance = if top <= self.flat { top } else { slope };
-            let place = if u[r] < 0.0 { -distance } else { distance };
-            let from = (place - 0.5 * self.pixel) * self.per_emitter;
-            let to = (place + 0.5 * self.pixel) * self.per_emitter;
-            let from = if from > -0.5 { from } else { -0.5 };
-            let to = if to < 0.5 { to } else { 0.5 };
-            let on = 0.5 * (from + to) + side * (to - from);
-            let within = (place - self.emitter * on) * self.per_pixel;
-            let within = if within > -0.5 { within } else { -0.5 };
-            t[r] = place;
-            u[r] = on;
-            v[r] = if within < 0.5 { within } else { 0.5 };
-        }
-    }
 }
 
 /// Padded texels of a tilted plane; see [`super::tilted`].

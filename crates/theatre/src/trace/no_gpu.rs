@@ -9,6 +9,7 @@ use super::bounds::Padded;
 use super::estimate::Job;
 use super::plan::Plan;
 use super::sobol::Points;
+use super::tables::Tables;
 
 pub(super) const WGSL: &str = "";
 
@@ -28,6 +29,7 @@ impl Sampler {
         _: &[u64],
         _: &[Arc<Padded>],
         _: &Points,
+        _: &Tables,
     ) -> Result<Gpu, RenderError> {
         match self.gpu {}
     }

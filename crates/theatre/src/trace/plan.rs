@@ -6,7 +6,7 @@
 use kelir_frame::{Pixel, RenderError, View};
 use kelir_scene::{Ambient, EmitterShape, Plane, Theatre};
 
-use super::axis::{Axis, pixel_sides};
+use super::axis::{Axis, Fixed, pixel_sides};
 use super::bounds::{Padded, Range};
 use super::tilted::Tilted;
 use crate::project::{self, sides_m};
@@ -29,6 +29,10 @@ pub(crate) struct Parallel {
     pub emitter: [f32; 2],
     /// Texels along x and y over the whole pixel; 0 for `centre`.
     pub pixel: [f32; 2],
+    /// Places along x and y as whole numbers.
+    pub fixed: [Fixed; 2],
+    /// The boxes' middles relative to their anchors in them: of every column and every row.
+    pub middles: [Vec<i32>; 2],
 }
 
 /// What the square of u is mapped to.
@@ -194,10 +198,22 @@ fn axes(
         let half = 0.5 * (emitter[d] + pixel[d]) + beyond;
         Axis::new(centre, centre - half, centre + half, texels)
     };
+    let fixed = [0, 1].map(|d| Fixed::new(0.5 * (emitter[d] + pixel[d])));
+    let lines = |d: usize| {
+        let line = |k: usize| if d == 0 { point(k as f64, 0.0).x } else { point(0.0, k as f64).y };
+        let texels = if d == 0 { plane.mask.width } else { plane.mask.height };
+        let both = |k| (axis(line(k), d, texels), line(k));
+        let both =
+            (0..view.size[d]).map(both).map(|(axis, centre)| (axis, fixed[d].of(centre - axis.line())));
+        both.unzip()
+    };
+    let ((columns, across), (rows, down)) = (lines(0), lines(1));
     Parallel {
-        columns: (0..view.size[0]).map(|i| axis(point(i as f64, 0.0).x, 0, plane.mask.width)).collect(),
-        rows: (0..view.size[1]).map(|j| axis(point(0.0, j as f64).y, 1, plane.mask.height)).collect(),
+        columns,
+        rows,
         emitter: emitter.map(|v| v as f32),
         pixel: pixel.map(|v| v as f32),
+        fixed,
+        middles: [across, down],
     }
 }

@@ -39,6 +39,12 @@ impl Points {
         });
         Self { seed, samples, scrambled: true, dims }
     }
+
+    /// Coordinate `d` in [−½, ½) of a replicate's point, shifted by the words of stream `key`: 24 bits, as [`super::native`] takes.
+    pub(crate) fn at(&self, key: u32, d: usize, point: usize, replicate: usize) -> f64 {
+        let shift = if self.scrambled { shift(key, d, replicate) } else { 0 };
+        f64::from((self.dims[d][point * REPLICATES + replicate] ^ shift) as i32 >> 8) / 16_777_216.0
+    }
 }
 
 /// A 64-bit seed as one word.

@@ -14,6 +14,8 @@ struct Params {
     channels: u32,
     // 0 for points that stand still.
     scrambled: u32,
+    // Shifts of the points that the tables hold.
+    variants: u32,
 }
 
 struct Job {
@@ -34,6 +36,8 @@ struct Axis {
     low: f32,
     high: f32,
     anchor: i32,
+    // The box's middle relative to the anchor as the tables count.
+    middle: i32,
 }
 
 struct Emitter {
@@ -43,6 +47,8 @@ struct Emitter {
     pixel_y: f32,
     // 0 rectangle, 1 disk, 2 dome.
     shape: u32,
+    // Its tables' first word behind the points', or NONE.
+    table: u32,
 }
 
 // The texels that one plane shows of one emitter (planes of an emitter follow each other).
@@ -66,6 +72,9 @@ struct Map {
     normal_y: f32,
     // What a code counts, as in bounds.rs.
     unit: f32,
+    // Bits of a table's texel.
+    shift_x: u32,
+    shift_y: u32,
 }
 
 // What one job adds to a tilted plane, as in tilted.rs.
@@ -80,12 +89,13 @@ struct Seen {
 }
 
 const REPLICATES = 16u;
+const NONE = 4294967295u;
 // Sums of this many terms are added to sums of sums, so that rounding stays small however many points there are.
 const FLUSH = 32u;
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> jobs: array<Job>;
-// Four tables of `samples * REPLICATES` words.
+// Four times `samples * REPLICATES` words; behind them the tables of tables.rs, subset by subset, x then y, variant by variant.
 @group(0) @binding(2) var<storage, read> points: array<u32>;
 @group(0) @binding(3) var<storage, read> emitters: array<Emitter>;
 @group(0) @binding(4) var<storage, read> maps: array<Map>;
@@ -119,6 +129,11 @@ fn texel(axis: Axis, t: f32) -> i32 {
     return i32(floor(clamp(t, axis.low, axis.high))) + axis.anchor;
 }
 
+// Axis and place as whole numbers; see tables.rs.
+fn tabled_texel(axis: Axis, place: i32, shift: u32) -> i32 {
+    return clamp((axis.middle + place) >> shift, i32(axis.low), i32(axis.high)) + axis.anchor;
+}
+
 fn tilted_texels(map: Map, seen: Seen, u: vec2<f32>, v: vec2<f32>) -> vec2<i32> {
     // y runs downwards on source and pixel, upwards in space.
     let q = vec2<f32>(map.emitter_x * u.x, -(map.emitter_y * u.y));
@@ -133,19 +148,6 @@ fn tilted_texels(map: Map, seen: Seen, u: vec2<f32>, v: vec2<f32>) -> vec2<i32> 
         texel(seen.x, seen.x.offset + (dot(right, m) + step * (seen.along_x + dot(right, w)))),
         texel(seen.y, seen.y.offset + (dot(down, m) + step * (seen.along_y + dot(down, w)))),
     );
-}
-
-// Place on box * pixel, and a point of emitter and pixel that has it; `Window` in native.rs.
-fn split(u: f32, v: f32, emitter: f32, pixel: f32) -> vec3<f32> {
-    let share = abs(u);
-    let top = share * max(emitter, pixel);
-    let slope = 0.5 * (emitter + pixel) - sqrt(2.0 * emitter * pixel * (0.5 - share));
-    let distance = select(slope, top, top <= 0.5 * abs(emitter - pixel));
-    let place = select(distance, -distance, u < 0.0);
-    let from_u = max((place - 0.5 * pixel) / emitter, -0.5);
-    let to_u = min((place + 0.5 * pixel) / emitter, 0.5);
-    let on = 0.5 * (from_u + to_u) + v * (to_u - from_u);
-    return vec3<f32>(place, on, clamp((place - emitter * on) / pixel, -0.5, 0.5));
 }
 
 fn disk(u: vec2<f32>) -> vec2<f32> {
@@ -188,30 +190,31 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     );
     let table = params.samples * REPLICATES;
     let coloured = params.channels == 3u;
-    var placed = params.scrambled == 1u && params.area == 1u && emitter.shape == 0u && job.first < job.end;
-    if placed {
-        placed = maps[job.emitter * params.planes + job.first].tilted == 0u;
+    // Where the pixel's own x and y begin in the tables.
+    let tabled = emitter.table != NONE;
+    let count = job.end - job.first;
+    var sides = vec2<u32>(emitter.table);
+    if tabled {
+        if count != params.planes {
+            sides += 2u * params.variants * table * (params.planes + 1u + 2u * job.first);
+        }
+        let mask = params.variants - 1u;
+        sides += vec2<u32>(key & mask, params.variants + ((key >> 16u) & mask)) * (count + 1u) * table;
     }
     var total = vec3<f32>(0.0);
     var part = vec3<f32>(0.0);
     for (var s = 0u; s < params.samples; s++) {
         let at = s * REPLICATES + replicate;
-        var u = vec2<f32>(unit(points[at] ^ shifts.x), unit(points[table + at] ^ shifts.y));
+        var u = vec2<f32>(0.0);
         var v = vec2<f32>(0.0);
-        if params.area == 1u {
+        if !tabled {
+            u = vec2<f32>(unit(points[at] ^ shifts.x), unit(points[table + at] ^ shifts.y));
+        }
+        if !tabled && params.area == 1u {
             v = vec2<f32>(
                 unit(points[2u * table + at] ^ shifts.z),
                 unit(points[3u * table + at] ^ shifts.w),
             );
-        }
-        var place = vec2<f32>(0.0);
-        if placed {
-            let first = maps[job.emitter * params.planes + job.first];
-            let x = split(u.x, v.x, first.emitter_x, first.pixel_x);
-            let y = split(u.y, v.y, first.emitter_y, first.pixel_y);
-            place = vec2<f32>(x.x, y.x);
-            u = vec2<f32>(x.y, y.y);
-            v = vec2<f32>(x.z, y.z);
         }
         if emitter.shape >= 1u {
             u = disk(u);
@@ -223,35 +226,44 @@ fn sample(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
         for (var p = job.first; p < job.end; p++) {
             let m = job.emitter * params.planes + p;
             let map = maps[m];
-            var at: vec2<i32>;
-            if map.tilted == 1u {
-                at = tilted_texels(map, seen_by[index * params.planes + p], u, v);
-            } else if placed && p == job.first {
+            var texels: vec2<i32>;
+            if tabled {
+                let place = sides + (p - job.first) * table + at;
                 let x = axes[m * lines + job.x];
                 let y = axes[m * lines + params.width + job.y];
-                at = vec2<i32>(texel(x, x.offset + place.x), texel(y, y.offset + place.y));
+                texels = vec2<i32>(
+                    tabled_texel(x, bitcast<i32>(points[place.x]), map.shift_x),
+                    tabled_texel(y, bitcast<i32>(points[place.y]), map.shift_y),
+                );
+            } else if map.tilted == 1u {
+                texels = tilted_texels(map, seen_by[index * params.planes + p], u, v);
             } else {
                 let x = axes[m * lines + job.x];
                 let y = axes[m * lines + params.width + job.y];
-                at = vec2<i32>(
+                texels = vec2<i32>(
                     texel(x, x.offset + map.emitter_x * u.x + map.pixel_x * v.x),
                     texel(y, y.offset + map.emitter_y * u.y + map.pixel_y * v.y),
                 );
             }
-            let first = f32(textureLoad(masks, at, map.layer, 0).x) * map.unit;
+            let first = f32(textureLoad(masks, texels, map.layer, 0).x) * map.unit;
             if coloured {
                 let green = select(0u, 1u, map.channels == 3u);
                 seen *= vec3<f32>(
                     first,
-                    f32(textureLoad(masks, at, map.layer + green, 0).x) * map.unit,
-                    f32(textureLoad(masks, at, map.layer + 2u * green, 0).x) * map.unit,
+                    f32(textureLoad(masks, texels, map.layer + green, 0).x) * map.unit,
+                    f32(textureLoad(masks, texels, map.layer + 2u * green, 0).x) * map.unit,
                 );
             } else {
                 seen.x *= first;
             }
         }
-        let x = tangent.x - emitter.side_x * u.x + emitter.pixel_x * v.x;
-        let y = tangent.y - emitter.side_y * u.y + emitter.pixel_y * v.y;
+        var x = tangent.x - emitter.side_x * u.x + emitter.pixel_x * v.x;
+        var y = tangent.y - emitter.side_y * u.y + emitter.pixel_y * v.y;
+        if tabled {
+            let place = sides + count * table + at;
+            x = tangent.x - bitcast<f32>(points[place.x]);
+            y = tangent.y - bitcast<f32>(points[place.y]);
+        }
         let w = 1.0 + (x * x + y * y);
         // The dome's sides and tangents are zero: its weight is 1.
         part += (seen - v0) * (1.0 / (w * w));

@@ -19,7 +19,7 @@ use crate::trace::{Row, Tracer};
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
 /// draws, in its own files or in what it shares with others. What was made before is then made anew.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 
 /// What can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -148,9 +148,8 @@ impl Background {
             for (c, lit) in row.lit.iter_mut().enumerate() {
                 match &albedo {
                     PixelAlbedo::Uniform(a) => loops::reflect(lit, &vec![a[c]; w], total(c)),
-                    PixelAlbedo::Image(planes) => {
-                        let albedo = &planes[c.min(planes.len() - 1)];
-                        loops::reflect(lit, &albedo[j * w..][..w], total(c));
+                    PixelAlbedo::Image(image) => {
+                        loops::reflect(lit, &image.channel(c)[j * w..][..w], total(c));
                     }
                 }
             }

@@ -243,7 +243,7 @@ impl Renderer<Theatre> for Native {
     }
 
     fn adapter(&self) -> String {
-        format!("native {} threads {}", rayon::current_num_threads(), Isa::detect().name())
+        Isa::native()
     }
 }
 

@@ -231,7 +231,7 @@ fn look_up<const K: usize>(
             }
             // SAFETY: detected on this machine.
             Isa::Avx2 => return unsafe { look_up_avx2::<K>(sums, ends, weights, count, norm, out) },
-            Isa::Plain => {}
+            Isa::Baseline => {}
         }
     }
     look_up_generic::<K>(sums, ends, weights, count, norm, out);

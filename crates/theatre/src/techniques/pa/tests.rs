@@ -350,7 +350,7 @@ fn what_is_kept_between_drawings_changes_no_byte() {
     let cloth = |grey: bool| {
         let rgb = (0..90 * 50)
             .map(|k| [0, 1, 2].map(|c| 0.2 + 0.6 * ((k * 7 + if grey { 0 } else { c }) % 13) as f32 / 13.0));
-        Albedo::Image(Arc::new(kelir_scene::LinearImage { width: 90, height: 50, rgb: rgb.collect() }))
+        Albedo::Image(Arc::new(kelir_scene::LinearImage::new(90, 50, &rgb.collect::<Vec<_>>())))
     };
     let base = theatre(vec![plane(figure(100, 128, 1), [-0.3, 0.0, -0.2], 0.5)]);
     let changed = |change: &dyn Fn(&mut Theatre)| {

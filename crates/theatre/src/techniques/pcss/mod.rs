@@ -26,7 +26,7 @@ use std::ops::Bound;
 use std::sync::Arc;
 use std::time::Instant;
 
-use kelir_frame::{Backend, Frame, Meter, RenderError, Renderer, Stats, View, VisibilityModel};
+use kelir_frame::{Backend, Frame, Isa, Meter, RenderError, Renderer, Stats, View, VisibilityModel};
 use kelir_scene::{Ambient, EmitterShape, Theatre};
 use serde::{Deserialize, Serialize};
 
@@ -281,7 +281,7 @@ impl Renderer<Theatre> for Pcss {
     fn adapter(&self) -> String {
         match &self.gpu {
             Some(gpu) => gpu.gpu.adapter(),
-            None => format!("native {} threads", rayon::current_num_threads()),
+            None => Isa::native(),
         }
     }
 }

@@ -22,7 +22,7 @@ impl DeviceScreen {
     pub(super) fn new(gpu: &Gpu, background: &Background, size: [usize; 2]) -> Result<Self, RenderError> {
         let limits = gpu.device.limits();
         let (image, uniform) = match background.dome_albedo() {
-            Some(PixelAlbedo::Image(planes)) => (&planes[..], None),
+            Some(PixelAlbedo::Image(image)) => (&image.planes[..], None),
             Some(PixelAlbedo::Uniform(albedo)) => (&[][..], Some(*albedo)),
             None => (&[][..], None),
         };

@@ -146,8 +146,8 @@ fn features() -> Vec<(&'static str, Theatre, Knobs)> {
     let split = Knobs { split: 3, ..plain };
     let irradiance = Knobs { split: 2, weights: Weights::Irradiance, strips: 8, ..plain };
     let woven = |mut theatre: Theatre| {
-        let rgb = (0..64 * 36).map(|k| [0.3 + 0.6 * (k % 7) as f32 / 7.0, 0.5, 0.7]).collect();
-        let image = kelir_scene::LinearImage { width: 64, height: 36, rgb };
+        let rgb: Vec<_> = (0..64 * 36).map(|k| [0.3 + 0.6 * (k % 7) as f32 / 7.0, 0.5, 0.7]).collect();
+        let image = kelir_scene::LinearImage::new(64, 36, &rgb);
         theatre.screen.albedo = Albedo::Image(Arc::new(image));
         theatre
     };
