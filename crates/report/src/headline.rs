@@ -246,7 +246,7 @@ fn not_shown(report: &StudyReport) -> Vec<String> {
             lines.push(format!(
                 "{title}: a difference. The test alone has {}, but not after correction for {} planned tests.",
                 p_equals(p),
-                report.report.blocks.iter().filter(|b| b.planned).count()
+                report.report.blocks.iter().filter(|b| b.planned && !b.primary).count()
             ));
         }
         if significant_after_holm(block) || equivalent(block) {

@@ -1,6 +1,7 @@
 //! Every number of a report, one at a time: what the tables show and the CSV holds.
 
 mod order;
+mod pairs;
 mod psychometric;
 mod scale;
 
@@ -13,7 +14,7 @@ use crate::display;
 use crate::format::count;
 use kelir_stats::clustered::{Bootstrap, Coefficient, ShareMethod};
 use kelir_stats::inference::Interval;
-use kelir_study::report::{ALPHA, BlockReport, LEVEL, PairsReport, Proportion};
+use kelir_study::report::{ALPHA, BlockReport, LEVEL, Proportion};
 use kelir_study::trials::Role;
 
 /// Whose answers a number is of.
@@ -224,35 +225,6 @@ fn resampled(found: &Bootstrap) -> Interval {
     Interval { low: found.low, high: found.high, level: found.level }
 }
 
-/// Whether pairs differ, and the model of participants and pairs.
-fn of_pairs(rows: Rows<'_>, pairs: &PairsReport) -> Vec<Number> {
-    let mut all = Vec::new();
-    if let Some(test) = &pairs.test {
-        let ways = if test.exact { "all ways" } else { "random ways" };
-        let note = format!(
-            "small p: pairs differ; {ways} to deal participants' choices; n: participants whose choices differ"
-        );
-        let row = rows.number(format!("Cochran's Q (df = {})", test.df), test.q, 3).with_p(test.p);
-        all.push(row.resolved_to(test.p_smallest).of_n(test.participants, &note));
-    }
-    if let Some(model) = &pairs.model {
-        let interval = Interval { low: model.low, high: model.high, level: LEVEL };
-        let row = rows.number("share over participants and pairs, mixed logit (proportion)", model.share, 3);
-        let note = format!(
-            "of participants and pairs as these are drawn from; t with {} degrees of freedom; n: choices",
-            model.df
-        );
-        all.push(row.within(interval).of_n(model.choices, &note));
-        all.push(rows.coefficient("log odds, participants and pairs random (logit)", &model.log_odds));
-        all.push(rows.number("SD of participants' log odds, beside pairs (logit)", model.participant_sd, 3));
-        all.push(
-            Number { n: Some(model.pairs), ..rows.number("SD of pairs' log odds (logit)", model.pair_sd, 3) }
-                .noted("n: pairs"),
-        );
-    }
-    all
-}
-
 /// Every number of one block but its psychometric function's.
 pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     let (summary, analysis) = (&block.summary, &block.analysis);
@@ -281,7 +253,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     all.push(t.number("expected of who cannot tell (choices)", summary.mu, 1));
     if let (Some(value), Some(df), Some(p)) = (summary.t, summary.df, summary.p) {
         all.push(Number { n: Some(summary.n), ..t.number(format!("t (df = {df})"), value, 4).with_p(p) });
-        if let Some(p_holm) = block.p_holm {
+        if let Some(p_holm) = block.p_holm.filter(|_| !block.primary) {
             all.push(t.number("t, p corrected by Holm for all planned tests", value, 4).with_p(p_holm));
         }
     }
@@ -357,7 +329,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     }
 
     if let Some(pairs) = &block.pairs {
-        all.extend(of_pairs(rows("pairs beside each other"), pairs));
+        all.extend(pairs::of(rows("pairs beside each other"), pairs));
     }
 
     let power = rows("power");

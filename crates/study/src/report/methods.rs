@@ -187,10 +187,8 @@ fn endpoint(study: &StudyDefinition) -> String {
 }
 
 fn tests(text: &mut Text, study: &StudyDefinition, report: &Report) {
-    let is_primary = |id: &str| study.block(id).is_some_and(|block| study.is_primary_t_test(block));
-    let tested = report.blocks.iter().filter(|b| b.planned && !is_primary(&b.summary.id)).count();
-    let other =
-        if report.blocks.iter().any(|b| is_primary(&b.summary.id)) { "other planned" } else { "planned" };
+    let tested = report.blocks.iter().filter(|b| b.planned && !b.primary).count();
+    let other = if report.blocks.iter().any(|b| b.primary) { "other planned" } else { "planned" };
     let holm = if tested > 1 {
         format!(
             " P-values are also given corrected by Holm's method for the {tested} {other} tests, whether or not each is defined: the k-th smallest is \

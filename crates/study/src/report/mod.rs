@@ -60,6 +60,8 @@ pub struct BlockReport {
     pub summary: BlockSummary,
     /// Whether its t-test was planned: of an adaptive block it never is, of one with a psychometric function where the file says so.
     pub planned: bool,
+    /// Whether that test is the primary endpoint.
+    pub primary: bool,
     /// p corrected by Holm's method for all planned tests but the primary endpoint, those that are not defined among them; of the primary endpoint
     /// p itself; null where p is, and of a test that was not planned.
     pub p_holm: Option<f64>,
@@ -199,6 +201,7 @@ fn block_report(
     let firsts: Vec<Cluster> = seen.iter().map(|answers| firsts(answers)).collect();
     BlockReport {
         planned: block.plans_t_test(),
+        primary: study.is_primary_t_test(block),
         p_holm,
         analysis,
         by_item,
