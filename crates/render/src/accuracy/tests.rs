@@ -99,7 +99,9 @@ fn errors_are_what_theory_has_them() {
     assert!((crops.total.rmse / model.rmse - 1.0).abs() < 1e-2, "{crops:?} {model:?}");
     assert!(model.rmse > 20.0 * floor, "{model:?} {floor}");
     let by_irradiance: Vec<_> = measured(&report, "PA by irradiance");
-    assert!(by_irradiance.windows(2).all(|m| m[1].penumbra.rmse < m[0].penumbra.rmse));
+    let rmse: Vec<f64> = by_irradiance.iter().map(|m| m.penumbra.rmse).collect();
+    // From 4 × 4 pieces on, what is left does not come from the pieces: by the oracle, too, 8 × 8 are no better.
+    assert!(rmse[1..].iter().all(|e| *e < 0.25 * rmse[0]), "{rmse:?}, floor {floor}");
     assert!(by_irradiance[2].penumbra.rmse < 0.2 * pa.penumbra.rmse);
     assert!(by_irradiance.iter().all(|m| m.crops.as_ref().unwrap().model == VisibilityModel::Irradiance));
 

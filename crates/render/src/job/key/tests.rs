@@ -41,7 +41,7 @@ fn the_preimage_is_the_contracts() {
         "kelir-job/2\n",
         r#"{"backend":"cpu","camera":{"defocus_px":0.8,"jpeg_quality":90,"noise":0.012,"seed":1,"vignette":0.25},"#,
         r#""exposure":"still","knobs":{"dome_steps":32,"map_size":1024,"split":1,"strips":64,"variant":"exact","weights":"area"},"#,
-        r#""output":"still","pixel":"area","reference":{"knobs":{"seed":1,"spp":64},"revision":2,"technique":"mc"},"#,
+        r#""output":"still","pixel":"area","reference":{"knobs":{"seed":1,"spp":64},"revision":3,"technique":"mc"},"#,
         r#""revision":1,"scene":"5ce7e0000000000000000000000000000000000000000000000000000000cafe","shared_revision":1,"#,
         r#""size":[96,54],"technique":"pa","time_s":0.5}"#
     );
@@ -52,7 +52,7 @@ fn the_preimage_is_the_contracts() {
     // sha256sum of that text.
     assert_eq!(
         hex::encode(Sha256::digest(preimage)),
-        "fa64ec5c32b3f6e708275c1007bcc15d0e1e1b0d0c800fd838f4332f4a2980f0"
+        "ef590e0d756e842dd78195b91564bb516dff21b7f2585e134712315f6d6845c3"
     );
 }
 
