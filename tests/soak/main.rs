@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 const USAGE: &str = "soak [--seed N] [--rounds N] [--writers N] [--people N] [--starts N] [--seconds N] [--idle N] [ATTACK …]
-attacks: kill, disorder, starts, fuzz, noise, full, lock; all of them where none is named. KELIR_BIN names the binary.";
+attacks: kill, disorder, starts, fuzz, noise, full, lock, coverage; all of them where none is named. KELIR_BIN names the binary.";
 
 fn main() -> ExitCode {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());

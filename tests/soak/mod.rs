@@ -1,5 +1,6 @@
-//! Attacks on a served kelir, from outside and on this machine alone: `cargo xtask soak`.
+//! Attacks on a served kelir, from outside and on this machine alone, and on what its reports say: `cargo xtask soak`.
 
+mod coverage;
 pub mod crowd;
 mod disorder;
 mod fuzz;
@@ -24,7 +25,7 @@ use victim::Victim;
 pub struct Plan {
     /// What all chance comes from.
     pub seed: u64,
-    /// `kill -9`s.
+    /// `kill -9`s; simulated studies are twenty times as many in each cell.
     pub rounds: usize,
     /// People who write at once.
     pub writers: usize,
@@ -41,7 +42,7 @@ pub struct Plan {
 /// What an attack did, and what it found.
 #[derive(Debug)]
 pub struct Outcome {
-    /// What was done, in numbers.
+    /// What was done, in numbers; a table may follow.
     pub did: String,
     /// What must not be; empty where the server held.
     pub wrong: Vec<String>,
@@ -58,7 +59,7 @@ impl Plan {
 pub type Attack = fn(&Plan) -> Result<Outcome, String>;
 
 /// All of them, by name.
-pub const ATTACKS: [(&str, Attack); 7] = [
+pub const ATTACKS: [(&str, Attack); 8] = [
     ("kill", kill::attack),
     ("disorder", disorder::attack),
     ("starts", starts::attack),
@@ -66,6 +67,7 @@ pub const ATTACKS: [(&str, Attack); 7] = [
     ("noise", noise::attack),
     ("full", room::fill),
     ("lock", room::lock),
+    ("coverage", coverage::attack),
 ];
 
 /// What the database of a server that has ended, its log and kelir's own check of the chain have against what people were told.

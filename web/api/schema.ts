@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. bdd28d9dd063952d254899c316294df3671631b622dda75fa522b97f3d1ebbe4 40592786e0e851f9910c9b27b024e1e0cc96d86d334da582012db8bc516564c1
+// Generated from openapi.json by `npm run types`; do not edit. dcf595fc86403b2e69753f63b812bb7be6953c139e73fbae91c1ce2819a28cd6 0a08f24b9106a458f0593386d5bfedadfad38013031ebb3f373eec247db0e9f6
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -813,6 +813,14 @@ export interface components {
             /** @description Title for researchers. */
             title: string;
         };
+        /** @description Order and speed in one block. */
+        BlockOrder: {
+            /** @description Block's id. */
+            id: string;
+            outliers?: components["schemas"]["Outliers"] | null;
+            place?: components["schemas"]["WithinSlope"] | null;
+            speed?: components["schemas"]["WithinSlope"] | null;
+        };
         /** @description A block judged. */
         BlockReport: components["schemas"]["BlockSummary"] & {
             /** @description What is beside the paper's test. */
@@ -825,12 +833,15 @@ export interface components {
             first_role: components["schemas"]["Role"];
             /**
              * Format: double
-             * @description p corrected by Holm's method for all planned tests, those that are not defined among them; null where p is, and of a test that was not
-             *     planned.
+             * @description p corrected by Holm's method for all planned tests but the primary endpoint, those that are not defined among them; of the primary endpoint
+             *     p itself; null where p is, and of a test that was not planned.
              */
             p_holm?: number | null;
+            pairs?: components["schemas"]["PairsReport"] | null;
             /** @description Whether its t-test was planned: of an adaptive block it never is, of one with a psychometric function where the file says so. */
             planned: boolean;
+            /** @description Whether that test is the primary endpoint. */
+            primary: boolean;
             psychometric?: components["schemas"]["PsychometricReport"] | null;
             rt_ms?: components["schemas"]["Quartiles"] | null;
             /** @description Their 1st to 99th percentile, interpolated likewise; empty without answers. */
@@ -1163,6 +1174,61 @@ export interface components {
             /** @description The session's secret, for `Authorization: Bearer`; it is told this once. */
             token: string;
         };
+        /** @description Participants' and pairs' log odds scatter normally: logit P = β + σᵤ zᵢ + σᵥ xⱼ for participant i and pair j, all z and x ~ N(0, 1). */
+        CrossedLogit: {
+            /**
+             * Format: int64
+             * @description Choices.
+             */
+            choices: number;
+            /**
+             * Format: double
+             * @description One less than there are pairs, or participants where these are fewer: other samples are of both.
+             */
+            df: number;
+            /**
+             * Format: double
+             * @description And at its upper end.
+             */
+            high: number;
+            /**
+             * Format: double
+             * @description ln likelihood by Laplace's approximation.
+             */
+            log_likelihood: number;
+            /** @description β, the log odds at the centre of participants and pairs; p and 95% interval from t with `df`. */
+            log_odds: components["schemas"]["Coefficient"];
+            /**
+             * Format: double
+             * @description The same at the lower end of the interval of β.
+             */
+            low: number;
+            /**
+             * Format: double
+             * @description σᵥ, standard deviation of pairs' log odds.
+             */
+            pair_sd: number;
+            /**
+             * Format: int64
+             * @description Pairs with choices.
+             */
+            pairs: number;
+            /**
+             * Format: double
+             * @description σᵤ, standard deviation of participants' log odds.
+             */
+            participant_sd: number;
+            /**
+             * Format: int64
+             * @description Participants with choices.
+             */
+            participants: number;
+            /**
+             * Format: double
+             * @description Share of target choices over participants and pairs: the mean of P over both distributions.
+             */
+            share: number;
+        };
         /** @description One point of a curve. */
         CurvePoint: {
             /**
@@ -1175,6 +1241,18 @@ export interface components {
              * @description The share of target choices.
              */
             share: number;
+        };
+        /** @description How many participants had something. */
+        DeviceCount: {
+            /**
+             * Format: int64
+             * @description Participants.
+             */
+            participants: number;
+            /** @description What it was; "not known" where the browser did not say. */
+            value: string;
+            /** @description What is counted, with its unit. */
+            what: string;
         };
         /** @description The interval of a difference of two conditions, in JOD, and the test that there is none. */
         DifferenceInterval: {
@@ -1432,6 +1510,26 @@ export interface components {
             /** @description SVG with a title and a description: shapes and texts alone, no script, style, link or id; its ground is white. */
             svg: string;
         };
+        /** @description A test of what stood first. */
+        FirstTest: {
+            /**
+             * Format: int64
+             * @description Choices of what stood first.
+             */
+            chosen: number;
+            /**
+             * Format: int64
+             * @description Participants who made them.
+             */
+            participants: number;
+            /** @description By flipping the signs of participants' differences. */
+            test: components["schemas"]["Flipped"];
+            /**
+             * Format: int64
+             * @description Choices.
+             */
+            trials: number;
+        };
         /** @description What a page does where there is more room than a size fills at one device pixel a stimulus pixel. */
         Fit: "native" | "integer" | "fill";
         /** @description What can be known of a session besides its answers. */
@@ -1449,6 +1547,21 @@ export interface components {
              * @description Of how many sessions.
              */
             sessions: number;
+        };
+        /** @description The p of a sign-flip test. */
+        Flipped: {
+            /** @description Whether every pattern was tried. */
+            exact: boolean;
+            /**
+             * Format: double
+             * @description Two-sided p: of the patterns of signs, how many make the sum as large as it is.
+             */
+            p: number;
+            /**
+             * Format: double
+             * @description The smallest p that the test can give.
+             */
+            smallest: number;
         };
         /** @description How an animation was shown. Its position is a function of time: frame n is due n / fps seconds after the first. */
         FrameLog: {
@@ -1545,6 +1658,41 @@ export interface components {
             p_simulated: number;
             /** @description How many were simulated. */
             simulations: number;
+        };
+        /** @description Cochran's Q of pairs within participants, with its p by permutation. */
+        Heterogeneity: {
+            /**
+             * Format: double
+             * @description Pairs less one.
+             */
+            df: number;
+            /** @description Whether every way of dealing was counted. */
+            exact: boolean;
+            /**
+             * Format: double
+             * @description P(a Q at least as large) when each participant's choices are dealt out anew over the pairs they answered.
+             */
+            p: number;
+            /**
+             * Format: double
+             * @description P(χ² ≥ Q), which holds for many participants.
+             */
+            p_asymptotic: number;
+            /**
+             * Format: double
+             * @description The smallest p that so many random ways can give; null where p is exact.
+             */
+            p_smallest?: number | null;
+            /**
+             * Format: int64
+             * @description Participants who chose the target in some pairs and not in others: nobody else tells pairs apart.
+             */
+            participants: number;
+            /**
+             * Format: double
+             * @description Cochran's Q; where some participants left pairs out, the generalised Mantel–Haenszel statistic that it is a case of.
+             */
+            q: number;
         };
         /**
          * @description How the intraclass correlation is estimated.
@@ -1684,6 +1832,31 @@ export interface components {
              * @description Known, in [0, 1 − guess).
              */
             fixed: number;
+        };
+        /** @description A participant who keeps to one side. */
+        Leaning: {
+            /**
+             * Format: int64
+             * @description Choices of what stood first.
+             */
+            first: number;
+            /**
+             * Format: double
+             * @description Exact binomial p against a half.
+             */
+            p: number;
+            /**
+             * Format: double
+             * @description The same corrected by Holm's method for all who were tested.
+             */
+            p_holm: number;
+            /** @description Session's id. */
+            session_id: string;
+            /**
+             * Format: int64
+             * @description Choices.
+             */
+            trials: number;
         };
         /**
          * Format: double
@@ -1862,10 +2035,64 @@ export interface components {
              */
             t: number;
         };
+        /** @description What besides the conditions went with the choices. */
+        OrderReport: {
+            agreement?: components["schemas"]["WithinSlope"] | null;
+            /** @description Block by block. */
+            blocks: components["schemas"]["BlockOrder"][];
+            first?: components["schemas"]["FirstTest"] | null;
+            /** @description Participants with a side of their own: exact binomial test, p corrected by Holm for all who were tested. */
+            leaning: components["schemas"]["Leaning"][];
+            /**
+             * Format: int64
+             * @description The most trials any of them answered: with too few nobody's side can be shown.
+             */
+            most_trials: number;
+            /**
+             * Format: int64
+             * @description Participants tested for a side of their own.
+             */
+            tested: number;
+        };
         /** @description Where the scale has its zero. */
         Origin: "mean" | {
             /** @description The condition of this index. */
             condition: number;
+        };
+        /** @description Response times beyond Tukey's fences on the logarithm. */
+        Outliers: {
+            /**
+             * Format: double
+             * @description Answers above this time are slow outliers, in ms.
+             */
+            above_ms: number;
+            /**
+             * Format: int64
+             * @description Answers with a time.
+             */
+            answers: number;
+            /**
+             * Format: double
+             * @description Answers below this time are fast outliers, in ms.
+             */
+            below_ms: number;
+            /**
+             * Format: int64
+             * @description Fast ones.
+             */
+            fast: number;
+            /**
+             * Format: int64
+             * @description Slow ones.
+             */
+            slow: number;
+        };
+        /** @description The pairs of a block beside each other. */
+        PairsReport: {
+            model?: components["schemas"]["CrossedLogit"] | null;
+            /** @description Why something is missing, and what the model cannot say. */
+            notes: string[];
+            test?: components["schemas"]["Heterogeneity"] | null;
         };
         /** @description A parameter of the curve. */
         Parameter: {
@@ -1959,6 +2186,51 @@ export interface components {
             /** @description SHA-256 of its design and of the pixels that it shows. */
             version: string;
         };
+        /** @description The primary endpoint: which test of what decides, and after how many participants. */
+        PrimaryEndpoint: {
+            /** @description The block that is tested; absent for a difference on the scale. */
+            block?: string | null;
+            /** @description The two conditions whose difference on the scale is tested. */
+            compare?: string[] | null;
+            /** @description The item of the block that is tested alone. */
+            item?: string | null;
+            /**
+             * Format: int32
+             * @description Participants who are to be judged when the result is first looked at; absent: the file does not say.
+             */
+            participants?: number | null;
+            /** @description The test that decides, at a level of 0.05 and uncorrected, as it is one. */
+            test: components["schemas"]["PrimaryTest"];
+        };
+        /** @description The primary endpoint judged: one test, so that its p is not corrected for others. */
+        PrimaryReport: {
+            /** @description Whether it decides: p below 0.05. */
+            found: boolean;
+            /** @description What was named. */
+            named: components["schemas"]["PrimaryEndpoint"];
+            /** @description What is tested, in words. */
+            of: string;
+            /**
+             * Format: double
+             * @description Its p; null where the test is not defined.
+             */
+            p?: number | null;
+            /**
+             * Format: double
+             * @description The smallest p that random patterns of signs can give; null for a p that is computed.
+             */
+            p_smallest?: number | null;
+            /**
+             * Format: int64
+             * @description Participants who are judged in it.
+             */
+            participants: number;
+        };
+        /**
+         * @description A test that can decide.
+         * @enum {string}
+         */
+        PrimaryTest: "t-test" | "sign" | "wilcoxon" | "equivalence" | "binomial" | "scale";
         /** @description What the paper prints about one comparison, to three decimals. */
         Printed: {
             /**
@@ -2167,6 +2439,8 @@ export interface components {
             consistency?: components["schemas"]["Consistency"] | null;
             /** @description How the numbers that are there were got, paragraph by paragraph, as a methods section says it. */
             methods: string[];
+            order?: components["schemas"]["OrderReport"] | null;
+            primary?: components["schemas"]["PrimaryReport"] | null;
             /** @description What to cite for the methods that were used, in order of appearance. */
             references: string[];
             scale?: components["schemas"]["ScaleIntervals"] | null;
@@ -2329,6 +2603,13 @@ export interface components {
             reference: boolean;
             /** @description Its heading. */
             title: string;
+        };
+        /** @description When a version of a study was served. */
+        Served: {
+            /** @description For the first time, ISO-8601 UTC. */
+            first: string;
+            /** @description For the last time. */
+            last: string;
         };
         /** @description Whose a session is. The analysis is of participants alone. */
         SessionKind: "participant" | "pilot" | "simulated";
@@ -2696,6 +2977,7 @@ export interface components {
             idle_minutes: number;
             /** @description The language of its texts, as a BCP 47 tag. */
             language?: string;
+            primary?: components["schemas"]["PrimaryEndpoint"] | null;
             /** @description The question over every pair. */
             question: string;
             /** @description When an input counts as a response, as far as the file says so. */
@@ -2742,6 +3024,8 @@ export interface components {
             chain: components["schemas"]["Chain"];
             /** @description The study's definition, every value of it. */
             design: components["schemas"]["StudyDefinition"];
+            /** @description With which devices those who are judged took part, counted. */
+            devices: components["schemas"]["DeviceCount"][];
             /** @description What the pooled versions do not show alike. */
             different_stimuli: components["schemas"]["DifferentStimulus"][];
             /** @description Who is left out by the study's rules of screening, and why. */
@@ -2760,6 +3044,7 @@ export interface components {
             scale_with_excluded?: components["schemas"]["ScaleIntervals"] | null;
             /** @description The study's rules of screening. */
             screening: components["schemas"]["Screening"];
+            served?: components["schemas"]["Served"] | null;
             /** @description In which sizes it was shown, by rising size. */
             shown: components["schemas"]["ShownAt"][];
             /** @description Who is judged, and who is not. */
@@ -3232,6 +3517,49 @@ export interface components {
         };
         /** @description One of the two intervals. */
         Which: "first" | "second";
+        /** @description A slope within participants, and the test that there is none. */
+        WithinSlope: {
+            /**
+             * Format: double
+             * @description Upper end, likewise.
+             */
+            high?: number | null;
+            /**
+             * Format: double
+             * @description Confidence level.
+             */
+            level: number;
+            /**
+             * Format: double
+             * @description Lower end of the interval over participants; null where all say the same.
+             */
+            low?: number | null;
+            /**
+             * Format: int64
+             * @description Their observations.
+             */
+            observations: number;
+            /**
+             * Format: double
+             * @description P(a slope at least as far from 0) when y is dealt out anew within each group.
+             */
+            p: number;
+            /**
+             * Format: double
+             * @description The smallest p that so many ways of dealing can give.
+             */
+            p_smallest: number;
+            /**
+             * Format: int64
+             * @description Participants whose x varies within a group.
+             */
+            participants: number;
+            /**
+             * Format: double
+             * @description By how much y grows when x grows by 1, one line for all, each group about its own means.
+             */
+            slope: number;
+        };
     };
     responses: never;
     parameters: never;

@@ -41,7 +41,7 @@ enum Task {
     Release,
     /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
     Bench,
-    /// Attack the release binary: kills, disorder, floods, hostile bytes, a full disk. About three minutes; `--seed`, `--rounds`, `--seconds` and others
+    /// Attack the release binary (kills, disorder, floods, hostile bytes, a full disk) and its intervals (coverage). Some ten minutes; `--seed`, `--rounds`, `--seconds` and others
     /// are the attacks' own, as are their names (`cargo xtask soak --rounds 5 kill`).
     Soak {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

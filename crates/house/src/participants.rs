@@ -117,7 +117,7 @@ pub(crate) fn status(session: &Session) -> SessionStatus {
 }
 
 /// What is stored of a session; what its answers and the analysis say is still to be filled in.
-fn of_session(session: &Session) -> ParticipantColumns {
+pub(crate) fn of_session(session: &Session) -> ParticipantColumns {
     let session = session.clone();
     let row = ParticipantColumns {
         subject_id: session.subject_id,

@@ -1,15 +1,18 @@
 //! What came of a study, as the console and `kelir stats` show it.
 
+use crate::participants::of_session;
 use crate::selection::{Selection, SelectionError, VersionRef, With};
 use crate::weight::{Download, downloads};
 use kelir_report::{
-    Chain, DifferentStimulus, Fault, Participants, PooledVersion, ShownAt, Standing, Stimulus, StudyReport,
+    Chain, DeviceCount, DifferentStimulus, Fault, Participants, PooledVersion, Served, ShownAt, Standing,
+    Stimulus, StudyReport,
 };
 use kelir_stats::pairwise::Scale;
 use kelir_stats::paper::taylor_cameron;
 use kelir_store::{ShownSize, Store, StoreError, StoredAnswers, StudyStimulus};
 use kelir_study::analysis::{BlockSummary, conditions_scale, summarise};
 use kelir_study::answers::Answers;
+use kelir_study::columns::ParticipantColumns;
 use kelir_study::report::Report;
 use kelir_study::visits::{Judged, LeftOut, SessionKind, Visit};
 use serde::Serialize;
@@ -165,6 +168,9 @@ pub async fn report_of(
     let (pooled, other_versions) = selection.gathered(store).await?;
     let (stimuli, different_stimuli) = selection.shown(store).await?;
     let shown = shown_at(store, selection, &judged).await?;
+    let devices = devices(store, selection, &judged).await?;
+    let known = store.study_versions(&study.id).await?;
+    let served = known.into_iter().find(|version| version.version == selection.version());
     let chain = store.verify_chain(&study.id).await?;
     let times = store.answer_times(&study.id, &selection.versions).await?;
     Ok(StudyReport {
@@ -176,6 +182,7 @@ pub async fn report_of(
         different_stimuli,
         kelir_version: env!("CARGO_PKG_VERSION").to_owned(),
         answered: times.map(|(first, last)| [first, last]),
+        served: served.map(|v| Served { first: v.first_served_at, last: v.last_served_at }),
         participants,
         standing: standing(selection, &judged).summarised(&participants, &excluded, &other_versions),
         screening: study.screening.clone(),
@@ -185,6 +192,7 @@ pub async fn report_of(
         excluded,
         stimuli: stimuli.into_iter().map(stimulus).collect(),
         shown,
+        devices,
         other_versions,
         chain: Chain {
             rows: chain.rows,
@@ -195,6 +203,30 @@ pub async fn report_of(
         paper: taylor_cameron().ok().filter(|_| study.id == PAPER_STUDY),
         design: study.clone(),
     })
+}
+
+/// With which devices those who are judged took part.
+async fn devices(
+    store: &Store,
+    selection: &Selection,
+    judged: &Judged<'_>,
+) -> Result<Vec<DeviceCount>, StoreError> {
+    let of: HashSet<&str> = judged.judged.iter().map(|participant| &*participant.session_id).collect();
+    let id = &selection.study.id;
+    let mut rates = BTreeMap::new();
+    for told in store.shown_sizes(id, &selection.versions).await? {
+        rates.entry(told.session_id).or_insert(told.refresh_hz);
+    }
+    let sessions = store.sessions(id, &selection.versions).await?;
+    let known: Vec<ParticipantColumns> = sessions
+        .iter()
+        .filter(|session| of.contains(session.session_id.as_str()))
+        .map(|session| ParticipantColumns {
+            refresh_hz: rates.get(&session.session_id).copied().flatten(),
+            ..of_session(session)
+        })
+        .collect();
+    Ok(DeviceCount::of(&known))
 }
 
 /// In which sizes those who are judged saw the stimuli.

@@ -21,7 +21,8 @@ pub(crate) fn section(block: &BlockReport) -> Section {
         pieces.push(Piece::Text(sentence(&none_judged(summary))));
         return Section::new(title(block), pieces);
     }
-    pieces.extend(block.analysis.notes.iter().map(|note| Piece::Warning(sentence(note))));
+    let notes = block.analysis.notes.iter().chain(block.pairs.iter().flat_map(|pairs| &pairs.notes));
+    pieces.extend(notes.map(|note| Piece::Warning(sentence(note))));
     pieces.extend(figures::distribution(block));
     pieces.push(Piece::Table(table("", &of_block(Sample::Screened, block))));
     if let Some(found) = &block.psychometric {

@@ -69,6 +69,12 @@ pub(crate) fn p_equals(p: f64) -> String {
     format!("p = {}", p_value(p))
 }
 
+/// "p ≤ 0.0001" or "p = 0.1606".
+pub(crate) fn resolved_p_equals(p: f64, smallest: Option<f64>) -> String {
+    let shown = resolved_p(p, smallest);
+    if shown.starts_with('≤') { format!("p {shown}") } else { format!("p = {shown}") }
+}
+
 /// "0.55 to 1.08".
 pub(crate) fn range(low: f64, high: f64, decimals: usize) -> String {
     format!("{} to {}", fixed(low, decimals), fixed(high, decimals))

@@ -2,8 +2,9 @@
 
 use crate::StudyReport;
 use crate::document::{Piece, Section, short};
-use crate::format::{count, fixed, list, p_equals, percent, significant};
-use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER};
+use crate::format::{count, fixed, list, p_equals, percent, resolved_p_equals, significant};
+use kelir_study::PrimaryTest;
+use kelir_study::report::{ALPHA, BlockReport, DETECTION_POWER, PrimaryReport};
 
 /// The report's first section.
 pub(crate) fn section(report: &StudyReport) -> Section {
@@ -17,7 +18,14 @@ pub(crate) fn section(report: &StudyReport) -> Section {
     }
     pieces.push(Piece::Heading("Asked".to_owned()));
     pieces.push(Piece::List(asked(report)));
-    pieces.push(Piece::Heading("Found".to_owned()));
+    match &report.report.primary {
+        Some(primary) if !report.is_empty() => {
+            pieces.push(Piece::Heading("Found, primary endpoint".to_owned()));
+            pieces.push(Piece::List(vec![decided(primary)]));
+            pieces.push(Piece::Heading("Found besides, secondary and exploratory".to_owned()));
+        }
+        _ => pieces.push(Piece::Heading("Found".to_owned())),
+    }
     pieces.push(Piece::List(found(report)));
     if !report.is_empty() {
         pieces.push(Piece::Heading("Not shown".to_owned()));
@@ -54,12 +62,41 @@ fn pooling(report: &StudyReport) -> String {
     format!("Answers to {} versions of the study are pooled: {}. {shown}", versions.len(), list(&versions))
 }
 
+/// What came of the primary endpoint.
+fn decided(primary: &PrimaryReport) -> String {
+    let test = primary.named.test;
+    let people = count(primary.participants, "participant");
+    let Some(p) = primary.p else {
+        return format!("{}: the {} of {people} is not defined.", primary.of, test.in_words());
+    };
+    let what = if test == PrimaryTest::Equivalence { "equivalence to a half" } else { "a difference" };
+    let verdict = if primary.found { "shown" } else { "not shown" };
+    let p = resolved_p_equals(p, primary.p_smallest);
+    format!(
+        "{}: {what} is {verdict} by the {} of {people}, {p}, uncorrected as the only primary test.",
+        primary.of,
+        test.in_words()
+    )
+}
+
+/// Which result was singled out beforehand.
+fn endpoint(report: &StudyReport) -> String {
+    match &report.report.primary {
+        None => "The study file names no primary endpoint: none of the results was singled out beforehand."
+            .to_owned(),
+        Some(primary) => {
+            format!("Primary endpoint: {}, by the {}.", primary.of, primary.named.test.in_words())
+        }
+    }
+}
+
 fn asked(report: &StudyReport) -> Vec<String> {
     let comparisons = report.report.blocks.iter().map(|block| {
         let [a, b] = &block.summary.conditions;
         format!("{}: {a} against {b}, {}.", block.summary.title, count(block.summary.items as u64, "pair"))
     });
-    std::iter::once(format!("“{}”", report.question)).chain(comparisons).collect()
+    let question = std::iter::once(format!("“{}”", report.question));
+    question.chain(comparisons).chain([endpoint(report)]).collect()
 }
 
 /// The other condition of a block.
@@ -81,7 +118,8 @@ fn found(report: &StudyReport) -> Vec<String> {
     if report.is_empty() {
         return vec![report.standing.summary.clone()];
     }
-    let mut lines: Vec<String> = report.report.blocks.iter().map(of_block).collect();
+    let line = |block: &BlockReport| [of_block(block), pairs(block)].join(" ").trim_end().to_owned();
+    let mut lines: Vec<String> = report.report.blocks.iter().map(line).collect();
     if let Some(scale) = &report.report.scale {
         let mut order: Vec<_> = scale.conditions.iter().collect();
         order.sort_by(|a, b| b.jod.total_cmp(&a.jod));
@@ -161,6 +199,31 @@ fn of_block(block: &BlockReport) -> String {
     }
 }
 
+/// Whether the pairs behind a block's share may be taken together; nothing where it has no share of several.
+fn pairs(block: &BlockReport) -> String {
+    let shares = block.by_item.iter().filter_map(|item| Some(item.target.as_ref()?.proportion));
+    let (Some(pairs), Some(_)) = (&block.pairs, &block.analysis.proportion) else { return String::new() };
+    let (low, high) = shares.fold((1.0, 0.0), |(low, high), x| (f64::min(low, x), f64::max(high, x)));
+    let shares = if low == high {
+        format!("each {}", percent(low))
+    } else {
+        format!("{} to {}", percent(low), percent(high))
+    };
+    match &pairs.test {
+        None => format!("Whether its pairs differ ({shares}) cannot be tested."),
+        Some(test) => {
+            let p = resolved_p_equals(test.p, test.p_smallest);
+            if test.p < ALPHA {
+                format!(
+                    "Its pairs differ ({shares}; Cochran's Q, {p}): the share above is a mean of different ones."
+                )
+            } else {
+                format!("Its pairs are not shown to differ ({shares}; Cochran's Q, {p}).")
+            }
+        }
+    }
+}
+
 fn not_shown(report: &StudyReport) -> Vec<String> {
     let mut lines = Vec::new();
     for block in &report.report.blocks {
@@ -183,7 +246,7 @@ fn not_shown(report: &StudyReport) -> Vec<String> {
             lines.push(format!(
                 "{title}: a difference. The test alone has {}, but not after correction for {} planned tests.",
                 p_equals(p),
-                report.report.blocks.iter().filter(|b| b.planned).count()
+                report.report.blocks.iter().filter(|b| b.planned && !b.primary).count()
             ));
         }
         if significant_after_holm(block) || equivalent(block) {

@@ -5,6 +5,7 @@
 
 mod blocks;
 mod csv;
+mod devices;
 mod display;
 mod document;
 mod figures;
@@ -13,7 +14,9 @@ mod headline;
 mod html;
 mod markdown;
 mod numbers;
+mod order;
 mod paper;
+mod record;
 mod sections;
 mod sources;
 mod standing;
@@ -21,11 +24,13 @@ mod text;
 
 pub use self::csv::{csv, csv_table, visible};
 pub use ::csv::Terminator;
+pub use devices::DeviceCount;
 pub use display::ShownAt;
 pub use document::{Cell, Column, Document, Figure, Piece, Row, Section, Table};
 pub use html::{escaped, html};
 pub use markdown::{Figures, Markdown, markdown};
 pub use numbers::{Number, Sample, numbers};
+pub use record::Served;
 pub use standing::{Excluded, Flagged, Standing};
 pub use text::text;
 
@@ -56,6 +61,8 @@ pub struct StudyReport {
     pub kelir_version: String,
     /// When the first and the last answer came, ISO-8601 UTC; null without answers.
     pub answered: Option<[String; 2]>,
+    /// When the version was served; null where that is not known.
+    pub served: Option<Served>,
     /// How many people take part.
     pub participants: Participants,
     /// Who is judged, and who is not.
@@ -75,6 +82,8 @@ pub struct StudyReport {
     pub stimuli: Vec<Stimulus>,
     /// In which sizes it was shown, by rising size.
     pub shown: Vec<ShownAt>,
+    /// With which devices those who are judged took part, counted.
+    pub devices: Vec<DeviceCount>,
     /// Other versions of the study that have sessions; their answers are not in here.
     pub other_versions: Vec<PooledVersion>,
     /// Whether the stored answers are what was written: the study's own chain and, before it, the one that all studies used to share.

@@ -1,8 +1,11 @@
 //! Every number of a report, one at a time: what the tables show and the CSV holds.
 
+mod order;
+mod pairs;
 mod psychometric;
 mod scale;
 
+pub(crate) use order::{of_block_order, of_order};
 pub(crate) use psychometric::psychometric;
 pub(crate) use scale::of_scale;
 
@@ -68,6 +71,15 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
     ] {
         all.push(Rows::of(Sample::Screened, "", "participants").whole(statistic, value));
     }
+    if let Some(primary) = &report.report.primary {
+        let row = Rows::of(Sample::Screened, "", "primary endpoint");
+        let row = row.whole(
+            format!("{}, {} (participants)", primary.of, primary.named.test.in_words()),
+            primary.participants,
+        );
+        let row = Number { p: primary.p, ..row }.resolved_to(primary.p_smallest);
+        all.push(row.noted("named in the study file; p uncorrected"));
+    }
     let samples = [
         (Sample::Screened, Some(&report.report.blocks), report.report.scale.as_ref()),
         (Sample::Everybody, report.blocks_with_excluded.as_ref(), report.scale_with_excluded.as_ref()),
@@ -94,6 +106,10 @@ pub fn numbers(report: &StudyReport) -> Vec<Number> {
             n: Some(consistency.observers),
             ..rows.whole("observers far from the others' scale (participants)", odd)
         });
+    }
+    if let Some(order) = &report.report.order {
+        all.extend(of_order(order));
+        all.extend(order.blocks.iter().flat_map(of_block_order));
     }
     for stimulus in &report.stimuli {
         let rows = Rows::of(Sample::Screened, "", "stimulus error");
@@ -237,7 +253,7 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
     all.push(t.number("expected of who cannot tell (choices)", summary.mu, 1));
     if let (Some(value), Some(df), Some(p)) = (summary.t, summary.df, summary.p) {
         all.push(Number { n: Some(summary.n), ..t.number(format!("t (df = {df})"), value, 4).with_p(p) });
-        if let Some(p_holm) = block.p_holm {
+        if let Some(p_holm) = block.p_holm.filter(|_| !block.primary) {
             all.push(t.number("t, p corrected by Holm for all planned tests", value, 4).with_p(p_holm));
         }
     }
@@ -310,6 +326,10 @@ pub(crate) fn of_block(sample: Sample, block: &BlockReport) -> Vec<Number> {
         let row =
             clustered.number("SD of participants' log odds (logit)", found.sigma, 3).with_p(found.sigma_p);
         all.push(row);
+    }
+
+    if let Some(pairs) = &block.pairs {
+        all.extend(pairs::of(rows("pairs beside each other"), pairs));
     }
 
     let power = rows("power");

@@ -2,10 +2,12 @@
 
 use crate::blocks::{self, table};
 use crate::document::{Cell, Document, Piece, Row, Section, Table, short};
-use crate::format::{count, fixed, p_value, percent, share, significant};
+use crate::format::{count, fixed, list, p_equals, p_value, percent, range, share, significant};
 use crate::numbers::{Sample, of_scale};
-use crate::{StudyReport, display, figures, headline, paper, sources};
-use kelir_study::report::BlockReport;
+use crate::record::{self, minute};
+use crate::{StudyReport, devices, display, figures, headline, order, paper, sources};
+use kelir_stats::pairwise::ScaleIntervals;
+use kelir_study::report::{ALPHA, BlockReport};
 use kelir_study::visits::Repeated;
 use kelir_study::{Condition, Kind, StudyDefinition};
 use std::collections::BTreeSet;
@@ -35,13 +37,17 @@ pub(crate) fn all(report: &StudyReport) -> Vec<Section> {
     sections.extend(preferences(&report.report.blocks));
     sections.push(participants(report));
     sections.push(design(report));
+    sections.extend(devices::section(report));
     sections.extend(report.report.blocks.iter().map(blocks::section));
     sections.extend(scale(report));
     sections.extend(times(report));
+    sections.extend(order::section(report));
     sections.extend(errors(report));
     sections.extend(both_ways(report));
     sections.extend(paper::section(report));
     sections.push(sources::methods(report));
+    sections.extend(record::preregistration(report));
+    sections.push(record::statements(report));
     sections.push(sources::data(report));
     sections.push(sources::citation(report));
     sections
@@ -126,6 +132,7 @@ fn participants(report: &StudyReport) -> Section {
             rows.map(row).collect(),
         )));
     }
+    pieces.extend(looks(report));
     pieces.extend(flagged(report));
     let balance = &report.standing.balance_summary;
     if !balance.is_empty() {
@@ -134,11 +141,30 @@ fn participants(report: &StudyReport) -> Section {
     Section::new("Participants", pieces)
 }
 
-/// "2026-11-22 14:22 UTC" of an ISO-8601 time; whatever else it is, as it is.
-fn minute(time: &str) -> String {
-    match (time.get(..10), time.get(10..11), time.get(11..16)) {
-        (Some(date), Some("T"), Some(minute)) if time.ends_with('Z') => format!("{date} {minute} UTC"),
-        _ => time.to_owned(),
+/// What a look at results before the end does to them.
+fn looks(report: &StudyReport) -> Option<Piece> {
+    let planned = report.design.primary.as_ref().and_then(|named| named.participants).map(u64::from);
+    let judged = report.standing.judged;
+    let inflates = "each look that could have ended the study raises the chance of a false alarm above the level of its tests. kelir keeps no record of how often results were \
+         looked at: say in the paper when they were, and why collecting ended.";
+    let under_way = count(report.participants.in_progress, "participant");
+    match planned {
+        _ if report.is_empty() => None,
+        Some(planned) if judged < planned => Some(Piece::Warning(format!(
+            "{judged} of the {planned} participants that the study file plans are judged here. What is decided by this report is not decided by the plan: {inflates}"
+        ))),
+        Some(planned) if judged == planned => {
+            Some(Piece::Text(format!("As many participants are judged as the study file plans, {planned}.")))
+        }
+        Some(planned) => Some(Piece::Warning(format!(
+            "{judged} participants are judged here, more than the {planned} that the study file plans. If results were looked at before: {inflates}"
+        ))),
+        None if report.participants.in_progress > 0 => Some(Piece::Warning(format!(
+            "The study is still collecting, {under_way} in progress, and its file plans no number of participants: {inflates}"
+        ))),
+        None => Some(Piece::Text(format!(
+            "The study file plans no number of participants after which results are looked at: {inflates}"
+        ))),
     }
 }
 
@@ -230,6 +256,7 @@ fn scale(report: &StudyReport) -> Option<Section> {
             "One axis does not hold these choices (small p of the deviance): how two conditions compare depends on more than their positions.".to_owned(),
         ));
     }
+    pieces.extend(disagreeing(found));
     pieces.push(Piece::Table(table("", &of_scale(Sample::Screened, found))));
     if let Some(consistency) = &judged.consistency {
         let triads = &consistency.triads;
@@ -259,6 +286,28 @@ fn scale(report: &StudyReport) -> Option<Section> {
         }
     }
     Some(Section::new(title, pieces))
+}
+
+/// Differences whose p and interval say different things of 5%: two methods, and a result on the border.
+fn disagreeing(found: &ScaleIntervals) -> Option<Piece> {
+    let named: Vec<String> = found
+        .differences
+        .iter()
+        .filter_map(|d| {
+            let (low, high) = d.low.zip(d.high)?;
+            let disagree = (low > 0.0 || high < 0.0) != (d.p < ALPHA);
+            disagree
+                .then(|| format!("{} − {} ({}, interval {})", d.a, d.b, p_equals(d.p), range(low, high, 2)))
+        })
+        .collect();
+    (!named.is_empty()).then(|| {
+        Piece::Warning(format!(
+            "The uncorrected p by sign flips and the {} interval by leaving out participants disagree about none at all of {}. They are different methods, and the result is on the \
+             border: the test decides, and another sample may well decide otherwise.",
+            percent(found.level),
+            list(&named)
+        ))
+    })
 }
 
 fn times(report: &StudyReport) -> Option<Section> {

@@ -17,6 +17,8 @@ pub struct ShownSize {
     pub scale: Option<[f64; 2]>,
     /// Least and greatest width, CSS px, where pages said so.
     pub css_width_px: Option<[f64; 2]>,
+    /// Greatest refresh rate that pages measured, Hz.
+    pub refresh_hz: Option<f64>,
 }
 
 /// A number of a payload within the bounds of its column; null for anything else.
@@ -38,7 +40,8 @@ impl Store {
         versions: &[String],
     ) -> Result<Vec<ShownSize>, StoreError> {
         let versions = serde_json::to_string(versions).map_err(|e| StoreError::corrupt("versions", e))?;
-        let [scale, width] = [number("payload", "scale", 100.0), number("payload", "css_width_px", 1e6)];
+        let [scale, width, rate] = [("scale", 100.0), ("css_width_px", 1e6), ("refresh_hz", 1e4)]
+            .map(|(field, most)| number("payload", field, most));
         let of = "s.study_id = ?1 AND s.version IN (SELECT value FROM json_each(?2))";
         let query = format!(
             "WITH given AS (
@@ -48,8 +51,8 @@ impl Store {
                  SELECT a.session_id, (SELECT json_extract(value, '$.sha256') FROM json_each(a.row, '$[5]') LIMIT 1), c.payload
                  FROM answers a JOIN sessions s USING (session_id)
                  LEFT JOIN answer_contents c ON c.study_id = a.study_id AND c.seq = a.seq WHERE {of} AND json_valid(a.row)
-             ), told AS (SELECT session_id, sha256, {scale} AS scale, {width} AS css_width FROM given)
-             SELECT session_id, coalesce(t.width, 0), coalesce(t.height, 0), count(*), min(scale), max(scale), min(css_width), max(css_width)
+             ), told AS (SELECT session_id, sha256, {scale} AS scale, {width} AS css_width, {rate} AS rate FROM given)
+             SELECT session_id, coalesce(t.width, 0), coalesce(t.height, 0), count(*), min(scale), max(scale), min(css_width), max(css_width), max(rate)
              FROM told LEFT JOIN stimuli t USING (sha256) GROUP BY 1, 2, 3 ORDER BY 1, 2, 3"
         );
         let study_id = study_id.to_owned();
@@ -72,5 +75,6 @@ fn shown(row: &Row<'_>) -> Result<ShownSize, rusqlite::Error> {
         answers: row.get::<_, i64>(3)?.unsigned_abs(),
         scale: range(4)?,
         css_width_px: range(6)?,
+        refresh_hz: row.get(8)?,
     })
 }

@@ -6,6 +6,7 @@ use crate::adaptive::Adaptive;
 use crate::conduct::{ResponseRules, SessionRules};
 use crate::display::DisplayRules;
 use crate::languages::{self, Texts, Translation};
+use crate::primary::{PrimaryEndpoint, PrimaryTest};
 use crate::trials::{TrialKind, TrialName};
 use crate::visits::{Flag, parameter};
 use kelir_stats::psychometric::{Lapse, Sigmoid};
@@ -51,6 +52,9 @@ pub struct StudyDefinition {
     /// How far from one half a share may lie and still count as equivalent to it; absent: nothing is tested for equivalence.
     #[serde(default, skip_serializing_if = "is_default")]
     pub equivalence: Option<EquivalenceBound>,
+    /// The one result that the study is made to decide; absent: none was named.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub primary: Option<PrimaryEndpoint>,
     /// Whose defaults the file has; files without one have the first's.
     #[serde(default = "first_edition", skip_serializing_if = "is_first_edition")]
     pub edition: u32,
@@ -304,6 +308,14 @@ impl StudyDefinition {
     /// When an input counts as a response, with the edition's defaults.
     pub fn response_rules(&self) -> ResponseRules {
         self.response.of_edition(self.edition)
+    }
+
+    /// Whether a block's t-test is the primary endpoint, and so a family of its own.
+    pub fn is_primary_t_test(&self, block: &Block) -> bool {
+        let is_it = |named: &PrimaryEndpoint| {
+            named.test == PrimaryTest::TTest && named.block.as_ref() == Some(&block.id)
+        };
+        self.primary.as_ref().is_some_and(is_it)
     }
 
     /// The kinds of its trials, in the order of first use.

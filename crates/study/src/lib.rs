@@ -8,6 +8,7 @@ mod display;
 mod fields;
 mod languages;
 mod parse;
+mod primary;
 #[cfg(test)]
 mod reference;
 
@@ -33,4 +34,5 @@ pub use display::{DisplayRules, Fit};
 pub use kelir_reader::{Problem, Problems};
 pub use languages::{Texts, Translation};
 pub use plan::{Decision, Procedures, Trial, TrialPlan, next_trials};
+pub use primary::{PrimaryEndpoint, PrimaryTest};
 pub use trials::TrialKind;

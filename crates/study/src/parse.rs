@@ -13,6 +13,7 @@ use self::texts::{QUESTION, TITLE};
 use crate::conduct::{NEWEST_EDITION, ResponseRules, SessionRules};
 use crate::definition::{Block, EquivalenceBound, Screening, StudyDefinition};
 use crate::fields::{IDENTIFIER, SECTION, identifier, integer, number, text};
+use crate::primary;
 use crate::visits::Flag;
 use kelir_reader::{Fields, Node, Problem, Problems, Reading, Source};
 use std::collections::BTreeSet;
@@ -81,6 +82,8 @@ fn read_study(source: &Source, file: &str, root: &Node) -> Option<StudyDefinitio
     let language = languages::read_own(&mut fields);
     let translations = languages::read_translations(&mut fields, language.as_deref());
     let blocks = blocks::read(&mut fields);
+    let analysed: Vec<&Block> = blocks.iter().map(|read| &read.block).collect();
+    let primary = primary::read(&mut fields, &analysed, equivalence.is_some());
     let conditions = conditions::read(&mut fields, &blocks, size.map(|_| display.sizes.len().max(1)));
     fields.done();
     Some(StudyDefinition {
@@ -99,6 +102,7 @@ fn read_study(source: &Source, file: &str, root: &Node) -> Option<StudyDefinitio
         blocks: blocks.into_iter().map(|read| read.block).collect(),
         screening: screening.unwrap_or_default(),
         equivalence,
+        primary,
         edition: u32::try_from(edition?).ok()?,
         response: response?,
         session: session?,

@@ -15,6 +15,8 @@ const SAMPLE: &str = r#"
 [completion]
 [screening]
 [equivalence]
+[primary]
+test = "TEST"
 [texts]
 [translations.TAG]
 texts = {}
@@ -44,6 +46,9 @@ fn asked() -> Asked {
     let reading = Reading::noting();
     for kind in TrialKind::all() {
         read_into(&reading, "sample.toml", &SAMPLE.replace("KIND", kind.name()));
+    }
+    for test in ["binomial", "scale"] {
+        read_into(&reading, "sample.toml", &SAMPLE.replace("TEST", test));
     }
     let keys = reading.asked().keys.into_iter();
     let keys = keys.filter(|(path, _)| !path.contains("pairs") && path != "conditions.files");

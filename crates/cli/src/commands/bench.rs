@@ -7,6 +7,7 @@ use super::drawing::Drawing;
 use crate::output::Figures;
 
 mod accuracy;
+mod coverage;
 mod frames;
 mod load;
 mod numerics;
@@ -45,6 +46,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         figures: Figures,
     },
+    /// How often the report's intervals hold the truth of simulated studies, in 12 fixed cells; fails below the bars. Takes minutes.
+    Coverage(coverage::Args),
     /// Durable answers a second, against Express and better-sqlite3 that store the same rows; how long a thousand people wait; whether starts and
     /// answers slow down as sessions gather.
     Load(load::Args),
@@ -57,6 +60,7 @@ impl Command {
         match self {
             Self::Frames { figures, .. } | Self::Numerics { figures, .. } => figures,
             Self::Accuracy(args) => &args.figures,
+            Self::Coverage(args) => &args.figures,
             Self::Load(args) => &args.figures,
             Self::Rows(args) => &args.figures,
         }
@@ -77,6 +81,7 @@ fn measure(command: Command) -> Result<()> {
             frames::run(&drawing, frames, scaling, &figures)
         }
         Command::Accuracy(args) => accuracy::run(&args),
+        Command::Coverage(args) => coverage::run(&args),
         Command::Numerics { stats: true, figures, .. } => numerics::statistics(&figures),
         Command::Numerics { curves: true, figures, .. } => numerics::curves(&figures),
         Command::Numerics { most, figures, .. } => numerics::renderer(most, &figures),

@@ -1,9 +1,12 @@
 //! Studies with known answers.
 
 use kelir_fixtures as fixtures;
-use kelir_report::{Chain, Excluded, Participants, PooledVersion, Standing, Stimulus, StudyReport};
+use kelir_report::{
+    Chain, DeviceCount, Excluded, Participants, PooledVersion, Served, Standing, Stimulus, StudyReport,
+};
 use kelir_study::StudyDefinition;
 use kelir_study::answers::{Answers, Participant, Row};
+use kelir_study::columns::ParticipantColumns;
 use kelir_study::report::Report;
 use kelir_study::screening::screen;
 use serde_json::json;
@@ -19,6 +22,8 @@ pub(crate) struct Study {
     pub screening: String,
     /// The bound of equivalence on the share; empty for none.
     pub within: String,
+    /// The primary endpoint's keys; empty for none.
+    pub primary: String,
     pub blocks: String,
     pub people: Vec<Vec<(&'static str, &'static str, f64)>>,
 }
@@ -59,6 +64,7 @@ impl Default for Study {
             block_title: "Stills".to_owned(),
             screening: String::new(),
             within: String::new(),
+            primary: String::new(),
             blocks: BLOCKS.to_owned(),
             people: Vec::new(),
         }
@@ -151,6 +157,10 @@ impl Study {
             ("conditions", &conditions),
             ("screening", &screening),
         ];
+        let primary = format!("{{ {} }}", self.primary);
+        if !self.primary.is_empty() {
+            keys.push(("primary", &primary));
+        }
         if !self.within.is_empty() {
             keys.push(("equivalence", &within));
         }
@@ -188,6 +198,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
         }
     }
     let report = Report::of(&design, &judged);
+    let devices = vec![ParticipantColumns { refresh_hz: Some(60.0), ..Default::default() }; judged.len()];
     let with_excluded = (!excluded.is_empty()).then(|| Report::of(&design, &everybody));
     let stimulus = |item: &str, condition: &str, rmse: f64| Stimulus {
         item: item.to_owned(),
@@ -203,6 +214,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
     };
     let people_count = people.len() as u64;
     let participants = Participants { started: people_count, in_progress: 0, completed: people_count };
+    let times = ["2026-11-22T14:22:22.960Z", "2026-11-22T15:02:01.000Z"];
     let standing = Standing { judged: judged.len() as u64, ..Standing::default() };
     StudyReport {
         study: design.id.clone(),
@@ -212,8 +224,8 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
         pooled: vec![PooledVersion { version: "c3".repeat(32), sessions: people.len() as u64, answers: 0 }],
         different_stimuli: Vec::new(),
         kelir_version: "0.1.0".to_owned(),
-        answered: (!people.is_empty())
-            .then(|| ["2026-11-22T14:22:22.960Z", "2026-11-22T15:02:01.000Z"].map(str::to_owned)),
+        answered: (!people.is_empty()).then(|| times.map(str::to_owned)),
+        served: Some(Served { first: "2026-11-22T09:00:00.000Z".to_owned(), last: times[1].to_owned() }),
         participants,
         standing: standing.summarised(&participants, &excluded, &[]),
         screening: design.screening.clone(),
@@ -229,6 +241,7 @@ fn judge(design: StudyDefinition, people: &[Vec<(&str, &str, f64)>]) -> StudyRep
             stimulus("loop-a", "pa", 0.0),
         ],
         shown: Vec::new(),
+        devices: DeviceCount::of(&devices),
         other_versions: Vec::new(),
         chain: Chain { rows: 0, head: "0".repeat(64), faults: Vec::new(), blanked: 0 },
         paper: None,

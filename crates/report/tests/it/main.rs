@@ -1,6 +1,7 @@
 //! Reports as a whole: the numbers in them against R's, what hostile and empty studies make of them.
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
+mod explored;
 mod fixture;
 mod pages;
 

@@ -3,24 +3,31 @@
 //! A participant who prefers one technique prefers it in every pair, so n trials of m participants carry less than n answers. Here are
 //! the size of that dependence ([`intraclass`](fn@intraclass)), the share of all choices over participants ([`share_interval`]), and what else to do
 //! about it: resample participants ([`bootstrap`](fn@bootstrap)), keep the per-trial
-//! model but take its standard errors from the clusters ([`robust_logit`]), or model the participants ([`mixed_logit`]).
+//! model but take its standard errors from the clusters ([`robust_logit`]), or model the participants ([`mixed_logit`]), the pairs too ([`crossed_logit`]).
+//! [`heterogeneity`](fn@heterogeneity) tests whether pairs differ at all, [`within_slope`] what goes with place or time.
 //! [`independence_warning`] says when a per-trial test is not to be believed.
 
 mod bootstrap;
+mod crossed;
+mod heterogeneity;
 mod intraclass;
 mod logit;
 mod mixed;
 mod share;
 #[cfg(test)]
 mod tests;
+mod within;
 
 pub(crate) use bootstrap::quantile;
 pub use bootstrap::{Bootstrap, BootstrapMethod, MIN_REPLICATES, bootstrap};
+pub use crossed::{CrossedLogit, ENOUGH_PAIRS, crossed_logit};
+pub use heterogeneity::{Heterogeneity, heterogeneity};
 pub use intraclass::{IccEstimator, IndependenceWarning, Intraclass, independence_warning, intraclass};
 pub use logit::{Coefficient, Correction, RobustLogit, Row, robust_logit};
 pub(crate) use logit::{logistic, softplus};
 pub use mixed::{MixedLogit, mixed_logit};
 pub use share::{ShareInterval, ShareMethod, share_interval};
+pub use within::{Groups, WithinSlope, within_slope};
 
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};

@@ -12,6 +12,7 @@ mod multiplicity;
 mod power;
 mod proportion;
 mod ranks;
+mod sign_flips;
 mod t_test;
 
 use serde::Serialize;
@@ -32,6 +33,8 @@ pub use power::{
 pub(crate) use proportion::score_interval;
 pub use proportion::{clopper_pearson, jeffreys, wilson};
 pub use ranks::{RankMethod, SignedRank, wilcoxon_signed_rank};
+pub(crate) use sign_flips::flip;
+pub use sign_flips::{EXACT_FLIPS_TO, Flipped, sign_flips};
 pub use t_test::{TTest, t_test_from_counts, t_test_one_sample, t_test_paired};
 
 /// A confidence (or credible) interval.

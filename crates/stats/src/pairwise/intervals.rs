@@ -1,9 +1,9 @@
 //! Intervals of a scale, and tests of its differences, from observers.
 
-use super::flips::{flip, scores};
+use super::flips::scores;
 use super::scale::{fit, positions};
 use super::{Estimator, Observer, Scale, ScaleOptions, Wins, graph, pool, scale};
-use crate::inference::holm;
+use crate::inference::{flip, holm};
 use crate::normal;
 use crate::{Result, StatsError};
 use serde::{Deserialize, Serialize};
@@ -73,7 +73,7 @@ pub struct DifferenceInterval {
 /// An interval is estimate ± t × standard error with m − 1 degrees of freedom for m observers, the standard error from leaving out each
 /// observer in turn (jackknife, Efron & Stein 1981), fitted with Jeffreys' prior, which is always finite. Where leaving out anybody changes
 /// nothing there is no interval. A difference is tested by flipping the signs of observers' effective scores (Hemerik, Goeman & Finos 2020):
-/// over all patterns up to [`EXACT_FLIPS_TO`](super::EXACT_FLIPS_TO) observers with a score, else over `flips` random ones;
+/// over all patterns up to [`EXACT_FLIPS_TO`](crate::inference::EXACT_FLIPS_TO) observers with a score, else over `flips` random ones;
 /// deterministic for a seed.
 ///
 /// Errors: those of [`scale`](fn@scale); fewer than two observers with choices; fewer than 1,000 flips; a level outside (0, 1).

@@ -15,7 +15,6 @@ mod scale;
 mod tests;
 mod triads;
 
-pub use flips::EXACT_FLIPS_TO;
 pub use intervals::{ConditionInterval, DifferenceInterval, ScaleIntervals, observer_intervals};
 pub use model::Model;
 pub use observers::{ObserverFit, odd_observers};

@@ -1,14 +1,17 @@
 //! Simulated observers: what a design finds, how often, and how well its intervals cover.
 //!
 //! Every simulation draws observers from stated truths, runs the crate's own analysis on their answers, and counts. [`rate`] is the loop for any
-//! other design; [`preference_power`], [`threshold_precision`] and [`scale_power`] are the three of this field. Deterministic for a seed.
+//! other design; [`preference_power`], [`threshold_precision`] and [`scale_power`] are the three of this field, and [`coverage`](fn@coverage) holds every interval
+//! of a report to its truth. Deterministic for a seed.
 
+mod coverage;
 mod preference;
 mod scaling;
 #[cfg(test)]
 mod tests;
 mod threshold;
 
+pub use coverage::{CELLS, Coverage, CoverageCell, Shown, coverage, shortfalls};
 pub use preference::{PreferenceDesign, PreferencePower, participants_needed, preference_power};
 pub use scaling::{ScaleDesign, ScalePower, scale_power};
 pub use threshold::{ThresholdDesign, ThresholdPrecision, threshold_precision};

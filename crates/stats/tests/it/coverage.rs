@@ -6,6 +6,7 @@ use kelir_stats::inference::{clopper_pearson, wilson};
 use kelir_stats::pairwise::{Choice, Model, Observer, ScaleIntervals, ScaleOptions, observer_intervals};
 use kelir_stats::psychometric::{Level, Task, fit, resampled_threshold};
 use kelir_stats::random::Random;
+use kelir_stats::simulate::{CELLS, Coverage, Rate, Shown, coverage, shortfalls};
 
 /// P(k of `pairs`) for choices of mean `p` and intraclass correlation `icc`: the beta-binomial by Pólya's urn.
 fn urn(pairs: usize, p: f64, icc: f64) -> Vec<f64> {
@@ -290,4 +291,28 @@ fn a_resampled_threshold_is_searched_as_widely_as_everybodys() {
     let level = |person: u64, k: usize| Level { x: k as f64, correct: shares[k] - person % 3, trials: 100 };
     let plenty: Vec<Vec<Level>> = (0..10).map(|person| (0..5).map(|k| level(person, k)).collect()).collect();
     assert_eq!(resampled_threshold(&plenty, &task, replicates, 0.95, seed).unwrap().at_bound, 0);
+}
+
+/// Four of the twelve cells that `kelir bench coverage` tries.
+fn four(shown: Shown, runs: u64) -> Vec<Coverage> {
+    CELLS.iter().step_by(3).map(|cell| coverage(shown, cell, runs, 1).unwrap()).collect()
+}
+
+#[test]
+fn resampled_intervals_hold_the_truth_in_four_cells() {
+    for (shown, runs) in [
+        (Shown::Share, 400),
+        (Shown::Scale, 100),
+        (Shown::ResampledThreshold, 12),
+        (Shown::PosteriorThreshold, 12),
+    ] {
+        let found = four(shown, runs);
+        assert_eq!(shortfalls(&found), [""; 0]);
+        // Control: an interval that holds too little in one cell is named, and so is an average that does.
+        let mut short = found.clone();
+        let n = short[3].rate.runs;
+        short[3].rate = Rate::new(n / 2, n, 0);
+        let named = shortfalls(&short);
+        assert!(named[0].contains("with 32 participants") && named[0].starts_with(shown.name()), "{named:?}");
+    }
 }

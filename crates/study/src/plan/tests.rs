@@ -51,6 +51,7 @@ fn study(seed: u64, items: &[usize]) -> StudyDefinition {
             .collect(),
         screening: Default::default(),
         equivalence: None,
+        primary: None,
         edition: 1,
         response: Default::default(),
         session: Default::default(),

@@ -222,7 +222,7 @@ impl Sums {
             let of_size = everybody.iter().copied().filter(|p| crowd::index(&p.session_id) < size);
             let (kept, excluded): (Vec<&Participant>, Vec<&Participant>) =
                 of_size.partition(|p| screen(&crowd.design.study, p, &[]).is_empty());
-            let report = Report::of(&crowd.design.study, &kept);
+            let report = Report::claims(&crowd.design.study, &kept);
             let Outcome { tests, intervals } = claims.check(&report, crowd.design.alpha);
             sums.runs += 1;
             sums.excluded += excluded.len() as u64;

@@ -212,6 +212,6 @@ impl ChoiceAnalysis {
 }
 
 /// What came out, or `None` and a note that says why not.
-fn keep<T>(what: &str, result: Result<T, StatsError>, notes: &mut Vec<String>) -> Option<T> {
+pub(super) fn keep<T>(what: &str, result: Result<T, StatsError>, notes: &mut Vec<String>) -> Option<T> {
     result.map_err(|error| notes.push(format!("No {what}: {error}."))).ok()
 }

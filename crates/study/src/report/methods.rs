@@ -2,7 +2,9 @@
 
 mod design;
 
-use super::{ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, REPLICATES, Report, scaling};
+use super::{
+    ALPHA, ChoiceAnalysis, DETECTION_POWER, FENCES, LEVEL, POWER_EFFECTS, REPLICATES, Report, scaling,
+};
 use crate::definition::{GUESS, StudyDefinition};
 use kelir_stats::clustered::ShareMethod;
 use kelir_stats::pairwise::Estimator;
@@ -51,6 +53,13 @@ const PINHEIRO: &str = "Pinheiro, J. C., & Bates, D. M. (1995). Approximations t
      Journal of Computational and Graphical Statistics, 4(1), 12–35.";
 const SELF: &str = "Self, S. G., & Liang, K.-Y. (1987). Asymptotic properties of maximum likelihood estimators and likelihood ratio tests under nonstandard \
      conditions. Journal of the American Statistical Association, 82(398), 605–610.";
+const TUKEY: &str = "Tukey, J. W. (1977). Exploratory data analysis. Addison-Wesley.";
+const COCHRAN: &str =
+    "Cochran, W. G. (1950). The comparison of percentages in matched samples. Biometrika, 37(3/4), 256–266.";
+const LANDIS: &str = "Landis, J. R., Heyman, E. R., & Koch, G. G. (1978). Average partial association in three-way contingency tables: a review and discussion \
+     of alternative tests. International Statistical Review, 46(3), 237–254.";
+const BATES: &str = "Bates, D., Mächler, M., Bolker, B., & Walker, S. (2015). Fitting linear mixed-effects models using lme4. Journal of Statistical \
+     Software, 67(1), 1–48.";
 const JEFFREYS: &str = "Jeffreys, H. (1961). Theory of probability (3rd ed.). Oxford University Press.";
 
 /// Paragraphs of methods, and references, for what `report` holds.
@@ -58,15 +67,47 @@ pub(super) fn of(study: &StudyDefinition, report: &Report) -> (Vec<String>, Vec<
     let mut text = Text::default();
     design::say(&mut text, study);
     text.say(screening(study), &[]);
+    text.say(endpoint(study), &[]);
     if any(report, |a| a.t_test.t.is_some()) {
         tests(&mut text, study, report);
     }
     if any(report, |a| a.proportion.is_some()) {
         proportions(&mut text, report);
     }
+    pairs(&mut text, report);
     psychometric(&mut text, report);
     scale(&mut text, study, report);
+    order(&mut text, report);
     (text.paragraphs, text.references)
+}
+
+/// What was looked at besides.
+fn order(text: &mut Text, report: &Report) {
+    let Some(found) = &report.order else { return };
+    let mut said = vec![format!(
+        "Not planned, and to look at: each participant's choices of what stood first were compared with a half by the exact binomial test, corrected by \
+         Holm's method for the {} tested, and over all participants by flipping the signs of their differences from a half.",
+        found.tested
+    )];
+    let mut references = vec![HOLM, HEMERIK];
+    let slopes = found.blocks.iter().flat_map(|block| [&block.place, &block.speed]).flatten();
+    if slopes.chain(&found.agreement).next().is_some() {
+        said.push(
+            "Changes over a block's trials, of choices of the target and of agreement with most others in the same pair, and of choices with the time they took \
+             are least-squares slopes within participants; intervals are robust to any dependence within participants, and p is by dealing choices out anew \
+             within each participant and block."
+                .to_owned(),
+        );
+        references.push(LIANG);
+    }
+    if found.blocks.iter().any(|block| block.outliers.is_some()) {
+        said.push(format!(
+            "Outliers among a block's response times lie more than {FENCES} interquartile ranges of their logarithm below the first or above the third quartile \
+             (Tukey's fences); they were counted, not left out."
+        ));
+        references.push(TUKEY);
+    }
+    text.say(said.join(" "), &references);
 }
 
 /// Whether something of a block's analysis is there.
@@ -123,11 +164,34 @@ fn screening(study: &StudyDefinition) -> String {
     }
 }
 
+/// Which result was singled out beforehand.
+fn endpoint(study: &StudyDefinition) -> String {
+    let Some(named) = &study.primary else {
+        return "The study file names no primary endpoint: no result was singled out beforehand, and none is reported as if it had been.".to_owned();
+    };
+    let of = match (&named.block, &named.item, &named.compare) {
+        (Some(block), Some(item), _) => format!("item {item} of block {block}"),
+        (Some(block), None, _) => format!("block {block}"),
+        (None, _, Some([a, b])) => format!("{a} against {b}"),
+        (None, _, None) => String::new(),
+    };
+    let planned = match named.participants {
+        Some(n) => format!(", to be looked at when {n} participants are judged"),
+        None => "; the file does not say after how many participants it is to be looked at".to_owned(),
+    };
+    format!(
+        "The primary endpoint named in the study file is the {} of {of} at a level of {ALPHA}, uncorrected{planned}. Everything else is secondary, or exploratory where \
+         no test was planned.",
+        named.test.in_words()
+    )
+}
+
 fn tests(text: &mut Text, study: &StudyDefinition, report: &Report) {
-    let tested = report.blocks.iter().filter(|b| b.planned).count();
+    let tested = report.blocks.iter().filter(|b| b.planned && !b.primary).count();
+    let other = if report.blocks.iter().any(|b| b.primary) { "other planned" } else { "planned" };
     let holm = if tested > 1 {
         format!(
-            " P-values are also given corrected by Holm's method for the {tested} planned tests, whether or not each is defined: the k-th smallest is \
+            " P-values are also given corrected by Holm's method for the {tested} {other} tests, whether or not each is defined: the k-th smallest is \
              multiplied by {tested} + 1 − k, and is never below the one before nor above 1."
         )
     } else {
@@ -239,6 +303,36 @@ fn proportions(text: &mut Text, report: &Report) {
         references.extend([PINHEIRO, SELF]);
     }
     text.say(said, &references);
+}
+
+fn pairs(text: &mut Text, report: &Report) {
+    let found = || report.blocks.iter().filter_map(|block| block.pairs.as_ref());
+    let mut said = Vec::new();
+    let mut references = Vec::new();
+    let tests = || found().filter_map(|pairs| pairs.test.as_ref());
+    if tests().next().is_some() {
+        let random = tests().find_map(|test| test.p_smallest).map_or(String::new(), |smallest| {
+            format!(", or {:.0} random ones where there are too many", 1.0 / smallest - 1.0)
+        });
+        said.push(format!(
+            "Whether a block's pairs differ in their share of target choices was tested by Cochran's Q (where participants left pairs out, by the generalised \
+             Mantel–Haenszel statistic) against all ways to deal each participant's choices over the pairs they answered{random}, which holds whatever the choices of \
+             one participant have in common."
+        ));
+        references.extend([COCHRAN, LANDIS]);
+    }
+    if found().any(|pairs| pairs.model.is_some()) {
+        said.push(
+            "For participants and pairs other than these, the log odds of a target choice were estimated with crossed normal random intercepts of both, \
+             by maximum likelihood with Laplace's approximation; the interval uses t with one degree of freedom less than there are pairs (or participants, \
+             where these are fewer)."
+                .to_owned(),
+        );
+        references.push(BATES);
+    }
+    if !said.is_empty() {
+        text.say(said.join(" "), &references);
+    }
 }
 
 fn psychometric(text: &mut Text, report: &Report) {

@@ -2,11 +2,17 @@
 
 mod choices;
 mod methods;
+mod order;
+mod pairs;
+mod primary;
 mod psychometric;
 mod scaling;
 mod words;
 
 pub use choices::{ALPHA, ChoiceAnalysis, DETECTION_POWER, LEVEL, POWER_EFFECTS, Proportion, REPLICATES};
+pub use order::{BlockOrder, FENCES, FirstTest, Leaning, OrderReport, Outliers};
+pub use pairs::PairsReport;
+pub use primary::PrimaryReport;
 pub use psychometric::{
     CurvePoint, Goodness, LevelPoint, Parameter, PsychometricFit, PsychometricReport, ThresholdAt,
 };
@@ -26,6 +32,8 @@ use utoipa::ToSchema;
 /// A study judged.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Report {
+    /// What came of the primary endpoint; null where the study file names none.
+    pub primary: Option<PrimaryReport>,
     /// Each block, in study order.
     pub blocks: Vec<BlockReport>,
     /// All conditions on one axis, in JOD, where the blocks join them; with intervals and tests over participants.
@@ -36,6 +44,8 @@ pub struct Report {
     pub scale_note: Option<String>,
     /// How far observers contradict that scale and themselves; null without one.
     pub consistency: Option<Consistency>,
+    /// Sides, order and speed; null without answers.
+    pub order: Option<OrderReport>,
     /// How the numbers that are there were got, paragraph by paragraph, as a methods section says it.
     pub methods: Vec<String>,
     /// What to cite for the methods that were used, in order of appearance.
@@ -50,13 +60,17 @@ pub struct BlockReport {
     pub summary: BlockSummary,
     /// Whether its t-test was planned: of an adaptive block it never is, of one with a psychometric function where the file says so.
     pub planned: bool,
-    /// p corrected by Holm's method for all planned tests, those that are not defined among them; null where p is, and of a test that was not
-    /// planned.
+    /// Whether that test is the primary endpoint.
+    pub primary: bool,
+    /// p corrected by Holm's method for all planned tests but the primary endpoint, those that are not defined among them; of the primary endpoint
+    /// p itself; null where p is, and of a test that was not planned.
     pub p_holm: Option<f64>,
     /// What is beside the paper's test.
     pub analysis: ChoiceAnalysis,
     /// Each item alone, with all who answered it; empty for an adaptive block, which shows one item many times.
     pub by_item: Vec<ItemReport>,
+    /// Whether the pairs differ, and what holds of others; null with one pair, with levels, and where a procedure chose.
+    pub pairs: Option<PairsReport>,
     /// How the choices depend on the pairs' level; null where the study file asks for no psychometric function.
     pub psychometric: Option<PsychometricReport>,
     /// The role that stands first: left, or the first interval.
@@ -98,20 +112,38 @@ impl Report {
     /// Judges the answers to a study; excluded participants are to be left out by the caller. Resampling is seeded by the
     /// study's seed.
     pub fn of(study: &StudyDefinition, participants: &[&Participant]) -> Report {
+        let mut report = Report::claims(study, participants);
+        let analysed = blocks(study).filter(|(block, _)| !block.catch);
+        for (judged, (block, places)) in report.blocks.iter_mut().zip(analysed) {
+            let seen: Vec<&[Given]> = participants.iter().map(|p| p.answers_to(&places)).collect();
+            judged.pairs = pairs::of(block, &places, &seen, study.seed);
+        }
+        report.order = order::of(study, participants);
+        report.primary = study.primary.as_ref().map(|named| primary::of(named, &report));
+        (report.methods, report.references) = methods::of(study, &report);
+        report
+    }
+
+    /// What a study is planned for, without what is only there to look at: the same numbers, sooner.
+    pub(crate) fn claims(study: &StudyDefinition, participants: &[&Participant]) -> Report {
         let summaries = summarise(study, participants);
         let analysed = || blocks(study).filter(|(block, _)| !block.catch);
         // What was planned is tested whether or not its t came out defined: an undefined one rejects nothing, and counts.
         let planned: Vec<f64> = analysed()
             .zip(&summaries)
-            .filter(|((block, _), _)| block.plans_t_test())
+            .filter(|((block, _), _)| block.plans_t_test() && !study.is_primary_t_test(block))
             .map(|(_, summary)| summary.p.unwrap_or(1.0))
             .collect();
         let mut corrected = holm(&planned).unwrap_or_default().into_iter();
         let blocks = analysed()
             .zip(summaries)
             .map(|((block, items), summary)| {
-                let corrected = if block.plans_t_test() { corrected.next() } else { None };
-                let p_holm = summary.p.and(corrected);
+                let p_holm = match block.plans_t_test() {
+                    // One test is a family of its own.
+                    true if study.is_primary_t_test(block) => summary.p,
+                    true => corrected.next().and_then(|p| summary.p.and(Some(p))),
+                    false => None,
+                };
                 block_report(study, block, &items, summary, p_holm, participants)
             })
             .collect();
@@ -119,17 +151,17 @@ impl Report {
             Ok((scale, consistency)) => (Some(scale), Some(consistency), None),
             Err(note) => (None, None, Some(note)),
         };
-        let mut report = Report {
+        Report {
+            primary: None,
             blocks,
             scale,
             scale_pools: scaling::pooled(study),
             scale_note,
             consistency,
+            order: None,
             methods: Vec::new(),
             references: Vec::new(),
-        };
-        (report.methods, report.references) = methods::of(study, &report);
-        report
+        }
     }
 }
 
@@ -169,9 +201,11 @@ fn block_report(
     let firsts: Vec<Cluster> = seen.iter().map(|answers| firsts(answers)).collect();
     BlockReport {
         planned: block.plans_t_test(),
+        primary: study.is_primary_t_test(block),
         p_holm,
         analysis,
         by_item,
+        pairs: None,
         psychometric,
         first_role: block.trial.rules().roles()[0],
         first: Proportion::of(&firsts),

@@ -63,7 +63,7 @@ fn a_report_holds_every_part_and_leaves_catch_blocks_out() {
     let scale = report.scale.unwrap();
     assert_eq!(scale.scale.conditions, ["mc", "pa", "photo"]);
     assert!(scale.scale.jod.iter().all(|x| x.abs() < 1e-9), "nobody was preferred");
-    assert_eq!((report.methods.len(), report.references.len()), (7, 20), "{:?}", report.methods);
+    assert_eq!((report.methods.len(), report.references.len()), (10, 24), "{:?}", report.methods);
     // Each participant answered two of the three comparisons: no triad is whole.
     let consistency = report.consistency.unwrap();
     assert_eq!(consistency.triads, Triads { triads: 0, circular: 0, consistence: None });
@@ -281,4 +281,36 @@ fn methods_say_which_procedure_led_a_block_and_cite_it() {
         "{methods}"
     );
     assert!(references.contains("Watson") && !references.contains("Levitt"), "{references}");
+}
+
+#[test]
+fn a_primary_endpoint_is_read_by_its_test_and_is_part_of_the_design() {
+    let with = |keys: &str| text().replacen("question =", &format!("primary = {{ {keys} }}\nquestion ="), 1);
+    let read = |keys: &str| StudyDefinition::parse("s.toml", &with(keys));
+    for keys in [
+        "test = \"t-test\", block = \"stills\", participants = 32",
+        "test = \"binomial\", block = \"photos\", item = \"c\"",
+        "test = \"scale\", compare = [\"photo\", \"mc\"]",
+    ] {
+        let named = read(keys).unwrap();
+        assert_ne!(named.design_hash(), study().design_hash(), "{keys}");
+        // What is stored is read back.
+        assert_eq!(serde_json::from_str::<StudyDefinition>(&named.to_json()).unwrap().primary, named.primary);
+    }
+    assert!(!study().to_json().contains("primary"), "what is left out changes no hash");
+    for (keys, named) in [
+        ("block = \"stills\"", "primary.test: is missing"),
+        ("test = \"z\", block = \"stills\"", "primary.test = \"z\""),
+        ("test = \"equivalence\", block = \"stills\"", "primary.test = \"equivalence\""),
+        ("test = \"sign\"", "primary.block: is missing"),
+        ("test = \"sign\", block = \"easy\"", "primary.block = \"easy\""),
+        ("test = \"sign\", block = \"stills\", item = \"a\"", "primary.item"),
+        ("test = \"binomial\", block = \"stills\", item = \"c\"", "primary.item = \"c\""),
+        ("test = \"scale\", compare = [\"mc\", \"mc\"]", "primary.compare"),
+        ("test = \"scale\", compare = [\"mc\", \"none\"]", "primary.compare"),
+        ("test = \"sign\", block = \"stills\", participants = 1", "primary.participants = 1"),
+    ] {
+        let problems = read(keys).unwrap_err().to_string();
+        assert!(problems.contains(named), "{keys}: {problems}");
+    }
 }
