@@ -1,7 +1,8 @@
-//! Project tasks: `cargo xtask serve | test | release | bench | soak | pictures`. Typed, no makefile beside it.
+//! Project tasks: `cargo xtask serve | test | release | bench | gpu-check | soak | pictures`. Typed, no makefile beside it.
 //!
 //! It depends on nothing that takes long to build: a fresh machine meets it first.
 
+mod gpu_check;
 mod install;
 mod run;
 
@@ -41,6 +42,12 @@ enum Task {
     Release,
     /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
     Bench,
+    /// Put a folder together, target/gpu-check, that tries the GPU backend on a machine with a GPU and needs no compiler there.
+    GpuCheck {
+        /// A kelir with its GPU backend that is built already, in place of a release built now.
+        #[arg(long)]
+        kelir: Option<PathBuf>,
+    },
     /// Attack the release binary: kills, disorder, floods, hostile bytes, a full disk. About three minutes; `--seed`, `--rounds`, `--seconds` and others
     /// are the attacks' own, as are their names (`cargo xtask soak --rounds 5 kill`).
     Soak {
@@ -63,6 +70,10 @@ fn main() -> Result<()> {
             Ok(())
         }
         Task::Bench => bench(),
+        Task::GpuCheck { kelir } => {
+            ensure(&[Need::Node, Need::Cxx])?;
+            gpu_check::make(&kelir.map_or_else(release, Ok)?)
+        }
         Task::Soak { options } => soak(&options),
         Task::Pictures => pictures(),
     }
