@@ -36,7 +36,7 @@ enum Task {
         #[arg(long)]
         gpu: bool,
     },
-    /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests.
+    /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests, the pages in Chromium.
     Test,
     /// Build all of kelir at its fastest, target/release/kelir: about twice the work of the first `serve`.
     Release,
@@ -183,6 +183,7 @@ fn test() -> Result<()> {
     step("web lint", npm("web", &["run", "lint"]))?;
     step("web types", npm("web", &["run", "check"]))?;
     step("web units", npm("web", &["test"]))?;
+    step("web pages", npm("web", &["run", "test:browser"]))?;
     step("browser driver", npm("tests", &["ci", "--ignore-scripts"]))?;
     step("lints", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
     step(
