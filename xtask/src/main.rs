@@ -1,7 +1,8 @@
-//! Project tasks: `cargo xtask serve | test | release | bench | soak | pictures`. Typed, no makefile beside it.
+//! Project tasks: `cargo xtask serve | test | release | bench | gpu-check | soak | pictures`. Typed, no makefile beside it.
 //!
 //! It depends on nothing that takes long to build: a fresh machine meets it first.
 
+mod gpu_check;
 mod install;
 mod run;
 
@@ -35,12 +36,18 @@ enum Task {
         #[arg(long)]
         gpu: bool,
     },
-    /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests.
+    /// Install what the tests need and run everything: format, lints, unit, integration and end-to-end tests, the pages in Chromium.
     Test,
     /// Build all of kelir at its fastest, target/release/kelir: about twice the work of the first `serve`.
     Release,
     /// Measure speed and exactness with the release binary, on an otherwise idle machine: about a quarter of an hour.
     Bench,
+    /// Put a folder together, target/gpu-check, that tries the GPU backend on a machine with a GPU and needs no compiler there.
+    GpuCheck {
+        /// A kelir with its GPU backend that is built already, in place of a release built now.
+        #[arg(long)]
+        kelir: Option<PathBuf>,
+    },
     /// Attack the release binary (kills, disorder, floods, hostile bytes, a full disk) and its intervals (coverage). Some ten minutes; `--seed`, `--rounds`, `--seconds` and others
     /// are the attacks' own, as are their names (`cargo xtask soak --rounds 5 kill`).
     Soak {
@@ -63,6 +70,10 @@ fn main() -> Result<()> {
             Ok(())
         }
         Task::Bench => bench(),
+        Task::GpuCheck { kelir } => {
+            ensure(&[Need::Node, Need::Cxx])?;
+            gpu_check::make(&kelir.map_or_else(release, Ok)?)
+        }
         Task::Soak { options } => soak(&options),
         Task::Pictures => pictures(),
     }
@@ -172,6 +183,7 @@ fn test() -> Result<()> {
     step("web lint", npm("web", &["run", "lint"]))?;
     step("web types", npm("web", &["run", "check"]))?;
     step("web units", npm("web", &["test"]))?;
+    step("web pages", npm("web", &["run", "test:browser"]))?;
     step("browser driver", npm("tests", &["ci", "--ignore-scripts"]))?;
     step("lints", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
     step(

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::ValueEnum;
+use kelir_render::file::{try_writing, write_atomic};
 use kelir_report::{Terminator, csv_table};
 use serde::Serialize;
 
@@ -46,6 +47,14 @@ pub(crate) struct Figures {
 }
 
 impl Figures {
+    /// Errors: a file that can't be written, told before the work.
+    pub(crate) fn try_writing(&self) -> Result<()> {
+        match &self.json {
+            Some(path) if !self.printed() => Ok(try_writing(path)?),
+            _ => Ok(()),
+        }
+    }
+
     /// Prints a text, unless the figures stand in its place.
     pub(crate) fn say(&self, text: &str) -> Result<()> {
         if self.printed() { Ok(()) } else { print(text) }
@@ -67,7 +76,7 @@ impl Figures {
             Some(_) if self.printed() => print_json(figures),
             Some(path) => {
                 let text = serde_json::to_string_pretty(figures)?;
-                Ok(kelir_render::file::write_atomic(path, text.as_bytes())?)
+                Ok(write_atomic(path, text.as_bytes())?)
             }
         }
     }

@@ -12,8 +12,11 @@ const ABANDONED: Duration = Duration::from_secs(60);
 const ABANDONED_FOLDER: Duration = Duration::from_secs(3600);
 
 /// Writes `bytes` beside `path` and renames: whoever is interrupted leaves no half-written file, at most `NAME.PROCESS.NUMBER.part`, which
-/// a later write of the same file removes. Missing folders are made.
+/// a later write of the same file removes. Missing folders are made. A device or a pipe is written to, and stays what it is.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
+    if is_stream(path) {
+        return std::fs::write(path, bytes).map_err(|source| named(path, source));
+    }
     let part = part_of(path)?;
     let written = std::fs::write(&part.path, bytes).and_then(|()| std::fs::rename(&part.path, path));
     written.map_err(|source| named(path, source))
@@ -23,8 +26,16 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
 ///
 /// Errors: what the system says, and a folder in the file's place.
 pub fn try_writing(path: &Path) -> Result<(), RenderError> {
+    if is_stream(path) {
+        return Ok(());
+    }
     let part = part_of(path)?;
     std::fs::File::create(&part.path).map(drop).map_err(|source| named(path, source))
+}
+
+/// Whether something that is neither a file nor a folder stands there: `/dev/null`, a pipe.
+fn is_stream(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
 }
 
 fn part_of(path: &Path) -> Result<Part, RenderError> {
@@ -142,6 +153,19 @@ mod tests {
         expected.extend(kept);
         expected.sort_unstable();
         assert_eq!(left, expected);
+    }
+
+    /// Renamed over, `/dev/null` would be a file from then on.
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_file_is_not_replaced() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("socket");
+        let _listens = std::os::unix::net::UnixListener::bind(&path).unwrap();
+        assert!(write_atomic(&path, b"one").is_err());
+        assert!(std::fs::metadata(&path).unwrap().file_type().is_socket());
+        write_atomic(Path::new("/dev/null"), b"one").unwrap();
     }
 
     #[test]

@@ -4,6 +4,7 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use serde::Serialize;
 use wgpu::util::DeviceExt;
 
 use crate::{Backend, RenderError};
@@ -22,6 +23,17 @@ pub struct Gpu {
     info: wgpu::AdapterInfo,
     /// The first error that no call returned: validation, memory, a lost device.
     failure: Arc<Mutex<Option<String>>>,
+}
+
+/// What a device can hold at most.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Limits {
+    /// Pixels a side of a two-dimensional texture.
+    pub texture_side: u32,
+    /// Bytes of a buffer.
+    pub buffer_bytes: u64,
+    /// Bytes of a buffer that a shader reads.
+    pub storage_binding_bytes: u64,
 }
 
 /// Every Vulkan adapter as "name (type, driver)", real GPUs first.
@@ -132,6 +144,16 @@ impl Gpu {
     /// Whether a CPU imitates the GPU (lavapipe).
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// What it can hold.
+    pub fn limits(&self) -> Limits {
+        let limits = self.device.limits();
+        Limits {
+            texture_side: limits.max_texture_dimension_2d,
+            buffer_bytes: limits.max_buffer_size,
+            storage_binding_bytes: limits.max_storage_buffer_binding_size,
+        }
     }
 
     /// The error, if any, that happened since the device was opened; a failed device stays failed.

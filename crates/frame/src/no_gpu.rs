@@ -1,5 +1,7 @@
 //! What stands in for the GPU where kelir was built without it: there is none.
 
+use serde::Serialize;
+
 use crate::{Backend, RenderError};
 
 /// What to do for one.
@@ -9,6 +11,10 @@ const HOW_TO_BUILD: &str = "this kelir was built without its GPU backend: `cargo
 /// A device that cannot be.
 #[derive(Clone)]
 pub enum Gpu {}
+
+/// What a device can hold at most.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub enum Limits {}
 
 /// None.
 pub fn adapters() -> Vec<String> {
@@ -26,6 +32,16 @@ pub fn choose(backend: Backend) -> Result<Option<Gpu>, RenderError> {
 impl Gpu {
     /// "name (type, driver)".
     pub fn adapter(&self) -> String {
+        match *self {}
+    }
+
+    /// What it can hold.
+    pub fn limits(&self) -> Limits {
+        match *self {}
+    }
+
+    /// Whether a CPU imitates it.
+    pub fn is_software(&self) -> bool {
         match *self {}
     }
 

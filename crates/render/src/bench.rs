@@ -31,6 +31,11 @@ pub enum Case {
     NothingSkipped,
 }
 
+impl Case {
+    /// Each of them.
+    pub const ALL: [Self; 4] = [Self::Slid, Self::Posed, Self::LampMoved, Self::NothingSkipped];
+}
+
 /// Times of one case.
 #[derive(Clone, Debug, Serialize)]
 pub struct CaseReport {

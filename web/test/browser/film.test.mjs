@@ -44,7 +44,9 @@ test("a film on a display that leaves out frames stays at its time, and the tria
 });
 
 test("steps of a sequence stay whole frames of the measured refresh, at 75 Hz too", async (t) => {
-  const v = await visit(t, { stuff: intervals({ stills: 1 }), init: [display, { hz: 75, drop: [] }] });
+  // No duration lies halfway between two frames: which of them is nearer would be the last bit of the measured period.
+  const settings = { fixation_ms: 200, first_ms: 310, mask_ms: 110, second_ms: 250 };
+  const v = await visit(t, { stuff: intervals({ stills: 1, settings }), init: [display, { hz: 75, drop: [] }] });
   await begin(v, "1");
   await v.hook("choice-first").waitFor({ state: "visible" });
   await v.page.waitForTimeout(200);

@@ -9,6 +9,7 @@ use crate::output::Figures;
 mod accuracy;
 mod coverage;
 mod frames;
+mod gpu;
 mod load;
 mod numerics;
 mod rows;
@@ -31,6 +32,9 @@ pub(crate) enum Command {
     },
     /// Error against time: every technique over its knobs, against Monte Carlo and, on crops, the oracle.
     Accuracy(accuracy::Args),
+    /// Whether the GPU draws what the native code draws, by every technique and with what must not pass, and how fast and exact both are: a
+    /// minute or two. Fails where a comparison does not hold.
+    Gpu(gpu::Args),
     /// How exact the numbers are, against values that were not derived from them: the renderer's stress cases against the oracle, unless
     /// an option asks for something else.
     Numerics {
@@ -61,6 +65,7 @@ impl Command {
             Self::Frames { figures, .. } | Self::Numerics { figures, .. } => figures,
             Self::Accuracy(args) => &args.figures,
             Self::Coverage(args) => &args.figures,
+            Self::Gpu(args) => &args.figures,
             Self::Load(args) => &args.figures,
             Self::Rows(args) => &args.figures,
         }
@@ -70,6 +75,7 @@ impl Command {
 /// Runs the command.
 pub(crate) fn run(command: Command) -> Result<()> {
     let figures = command.figures().clone();
+    figures.try_writing()?;
     measure(command)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
     figures.note(&format!("\nMeasured with instruction set {} on {threads} threads.", Isa::provenance()))
@@ -82,6 +88,7 @@ fn measure(command: Command) -> Result<()> {
         }
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Coverage(args) => coverage::run(&args),
+        Command::Gpu(args) => gpu::run(&args),
         Command::Numerics { stats: true, figures, .. } => numerics::statistics(&figures),
         Command::Numerics { curves: true, figures, .. } => numerics::curves(&figures),
         Command::Numerics { most, figures, .. } => numerics::renderer(most, &figures),

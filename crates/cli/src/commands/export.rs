@@ -8,7 +8,7 @@ use kelir_house::selection::Selection;
 use kelir_house::{
     codebook_csv, codebook_of, events_table, pairs_csv, participants_table, responses_csv, spreadsheet,
 };
-use kelir_render::file::write_atomic;
+use kelir_render::file::{try_writing, write_atomic};
 use kelir_store::Store;
 use kelir_study::columns::{events_codebook, participants_codebook};
 
@@ -61,6 +61,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return Err(bad_input(
             "--table: a spreadsheet holds every table; give --output FILE.csv for one of them",
         ));
+    }
+    if let Some(file) = &args.output {
+        try_writing(file)?;
     }
     let content = block_on(async {
         if let Some(Table::Codebook) = args.table {

@@ -25,6 +25,7 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let design = read(&args.design)?;
+    args.figures.try_writing()?;
     let bar = progress::bar(design.simulations, "simulated studies");
     let (begun, due) = (Instant::now(), Mutex::new(FIRST_ANSWER));
     let found = power(&design, threads(), &|done, so_far| {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use kelir_render::file::write_atomic;
+use kelir_render::file::{try_writing, write_atomic};
 use kelir_report::{Document, Figures, html, markdown};
 
 use super::stored::Stored;
@@ -36,6 +36,10 @@ pub(crate) fn run(args: Args) -> Result<()> {
             args.output.display(),
             folder.display()
         )));
+    }
+    try_writing(&args.output)?;
+    if let Kind::Markdown { figures } = &kind {
+        try_writing(&args.output.with_file_name(figures).join("a.svg"))?;
     }
     let document = Document::of(&args.stored.report(&args.study)?);
     match kind {

@@ -19,6 +19,7 @@ mod estimate;
 pub(crate) mod gpu;
 mod native;
 mod plan;
+pub(crate) mod scenes;
 pub(crate) mod sobol;
 mod tables;
 mod tilted;
@@ -26,6 +27,7 @@ mod tilted;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use kelir_frame::gpu::Gpu;
 use kelir_frame::{Backend, Frame, Isa, Meter, Pixel, RenderError, Stats, View, VisibilityModel};
 use kelir_scene::{Ambient, Theatre};
 
@@ -52,9 +54,19 @@ pub(crate) struct Tracer {
 impl Tracer {
     /// On `backend`. Errors: no adapter where there must be one.
     pub(crate) fn new(backend: Backend) -> Result<Self, RenderError> {
-        let gpu =
-            kelir_frame::gpu::choose(backend)?.map(|gpu| gpu::Sampler::new(gpu, gpu::WGSL)).transpose()?;
-        Ok(Self { masks: HashMap::new(), lit: UnitImages::default(), gpu, meter: Meter::default() })
+        match kelir_frame::gpu::choose(backend)? {
+            Some(gpu) => Self::with_shader(&gpu, gpu::WGSL),
+            None => Ok(Self::of(None)),
+        }
+    }
+
+    /// On `gpu`, with the right shader or, for a negative control, with one that is off.
+    pub(crate) fn with_shader(gpu: &Gpu, wgsl: &str) -> Result<Self, RenderError> {
+        Ok(Self::of(Some(gpu::Sampler::new(gpu.clone(), wgsl)?)))
+    }
+
+    fn of(gpu: Option<gpu::Sampler>) -> Self {
+        Self { masks: HashMap::new(), lit: UnitImages::default(), gpu, meter: Meter::default() }
     }
 
     /// Begins a frame, for which masks and E⁰ are brought up to date; `visibilities` asks for more than its radiance.
@@ -204,4 +216,4 @@ pub(crate) fn sampler(theatre: Theatre, view: &View, spp: u32) -> impl FnMut(usi
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;

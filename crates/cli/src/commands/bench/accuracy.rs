@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use anyhow::Result;
 use kelir_house::shipped;
 use kelir_plot::{Axis, Figure, Point, Rule, Series, svg};
-use kelir_render::accuracy::{CaseReport, Measured, Options, Outcome, Report, all, measure};
+use kelir_render::accuracy::{Case, CaseReport, Measured, Options, Outcome, Report, all, measure};
 use kelir_render::subject::check_view;
 use kelir_render::{Backend, Pixel, View, VisibilityModel, file};
+use kelir_scene::Scene;
 
 use crate::commands::drawing::{PixelName, parse_backend, parse_size, render_error};
 use crate::output::{Figures, table};
@@ -68,6 +69,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if cases.is_empty() {
         return Err(bad_input(format!("only = {:?}: no technique's name begins so", args.only.join(","))));
     }
+    if let Some(path) = &args.plot {
+        file::try_writing(path).map_err(render_error)?;
+    }
     let view = View { size, pixel, skip: true };
     check_view(&still, &view).map_err(render_error)?;
     let options = Options {
@@ -79,13 +83,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         tolerance: args.tolerance,
         ..Options::new(view)
     };
-    let bar = progress::bar((cases.len() * options.backends.len() + 2) as u64, "reference");
-    let report = measure(&scene, &cases, &options, &mut |step| {
-        bar.set_message(step.what.to_owned());
-        bar.set_position(step.done as u64);
-    });
-    bar.finish_and_clear();
-    let report = report.map_err(render_error)?;
+    let report = watched(&scene, &cases, &options)?;
     // Files first: a closed pipe on the tables loses nothing.
     args.figures.give(&report)?;
     if let Some(path) = &args.plot {
@@ -93,6 +91,17 @@ pub(super) fn run(args: &Args) -> Result<()> {
         file::write_atomic(path, svg(&figure(&report, &name))?.as_bytes()).map_err(render_error)?;
     }
     args.figures.say(&text(&report))
+}
+
+/// Measures, and shows how far it is.
+pub(super) fn watched(scene: &Scene, cases: &[Case], options: &Options) -> Result<Report> {
+    let bar = progress::bar((cases.len() * options.backends.len() + 2) as u64, "reference");
+    let report = measure(scene, cases, options, &mut |step| {
+        bar.set_message(step.what.to_owned());
+        bar.set_position(step.done as u64);
+    });
+    bar.finish_and_clear();
+    report.map_err(render_error)
 }
 
 fn measured(result: &CaseReport) -> Option<&Measured> {
@@ -127,7 +136,8 @@ fn series_name(result: &CaseReport, report: &Report) -> String {
     }
 }
 
-fn text(report: &Report) -> String {
+/// The tables.
+pub(super) fn text(report: &Report) -> String {
     let [width, height] = report.size;
     let reference = &report.reference;
     let pixels = width * height;

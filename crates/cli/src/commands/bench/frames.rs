@@ -1,7 +1,7 @@
 //! `kelir bench frames`.
 
 use anyhow::Result;
-use kelir_render::bench::{self, Case, CaseReport, Saving, Scaled};
+use kelir_render::bench::{self, Case, CaseReport, FramesReport, Saving, Scaled};
 use kelir_render::{Backend, Technique};
 
 use crate::bad_input;
@@ -16,14 +16,9 @@ pub(super) fn run(drawing: &Drawing, count: usize, with_scaling: bool, figures: 
     let scene = drawing.load()?;
     let view = drawing.view(&scene.still())?;
     let technique = drawing.technique()?;
-    let cases = [Case::Slid, Case::Posed, Case::LampMoved, Case::NothingSkipped];
     let report =
-        bench::frames(&scene, &technique, drawing.backend, &view, count, &cases).map_err(render_error)?;
-    let [width, height] = report.size;
-    figures.say(&format!("{width}x{height}, {} frames a case, {}\n", report.frames, report.adapter))?;
-    let header =
-        ["case", "frames/s", "median ms", "p99 ms", "fill ms", "median/fill", "bound by", "steps, ms"];
-    figures.say(&table(&header, &report.cases.iter().map(case_line).collect::<Vec<_>>()))?;
+        bench::frames(&scene, &technique, drawing.backend, &view, count, &Case::ALL).map_err(render_error)?;
+    figures.say(&cases(&report))?;
     if scene.timeline().is_none() {
         figures.say("\nThe scene has no [timeline]: no puppet is posed.")?;
     }
@@ -58,6 +53,16 @@ pub(super) fn run(drawing: &Drawing, count: usize, with_scaling: bool, figures: 
         figures.say(&table(&["what", "value", "median ms", "frames/s"], &scaled_lines(&scaled)))?;
     }
     figures.give(&serde_json::json!({ "frames": report, "savings": savings, "scaling": scaled }))
+}
+
+/// What drew, and a line a case.
+pub(super) fn cases(report: &FramesReport) -> String {
+    let [width, height] = report.size;
+    let header =
+        ["case", "frames/s", "median ms", "p99 ms", "fill ms", "median/fill", "bound by", "steps, ms"];
+    let lines: Vec<_> = report.cases.iter().map(case_line).collect();
+    let (frames, adapter) = (report.frames, &report.adapter);
+    format!("{width}x{height}, {frames} frames a case, {adapter}\n\n{}", table(&header, &lines))
 }
 
 fn case_line(case: &CaseReport) -> Vec<String> {

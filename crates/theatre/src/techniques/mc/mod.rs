@@ -5,6 +5,7 @@
 //! unbiased.
 
 mod budget;
+mod twins;
 
 use std::ops::Bound;
 use std::time::Instant;
@@ -16,6 +17,8 @@ use serde::{Deserialize, Serialize};
 use crate::knobs::{self, Knob, Range};
 use crate::trace::sobol::{Points, REPLICATES};
 use crate::trace::{Row, Tracer};
+
+pub(crate) use twins::twins;
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
 /// draws, in its own files or in what it shares with others. What was made before is then made anew.

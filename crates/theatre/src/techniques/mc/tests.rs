@@ -1,14 +1,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
-use std::sync::Arc;
-
 use glam::DVec3;
 use kelir_frame::Pixel;
 use kelir_scene::*;
 
+use super::twins::crooked;
 use super::*;
 use crate::irradiance;
-use crate::trace::gpu::WGSL;
-use crate::trace::tests::{edge, theatre, view};
+use crate::trace::scenes::{edge, theatre, view};
 
 fn draw(theatre: &Theatre, view: &View, spp: u32, seed: u64) -> Frame {
     renderer(&Knobs { spp, seed, ..Knobs::default() }, Backend::Cpu).unwrap().radiance(theatre, view).unwrap()
@@ -66,19 +64,6 @@ fn brute(theatre: &Theatre, view: &View, k: usize, pixel: [usize; 2]) -> f64 {
             .sum(),
     };
     sum / cells * emitter.shape.area_m2()
-}
-
-/// A theatre with everything that makes a box more than a rectangle: a disk, tilted planes, the dome.
-fn crooked() -> Theatre {
-    let mut theatre = theatre(edge(1), Ambient::Dome { radiance: [0.3, 0.2, 0.1] });
-    theatre.lamp.emitters[0].shape = EmitterShape::Disk { radius_m: 0.08 };
-    theatre.planes[0].tilt_deg = [20.0, -35.0];
-    let mut second = theatre.planes[0].clone();
-    second.centre_m = DVec3::new(0.2, 0.25, -0.9);
-    second.size_m = [0.5, 0.4];
-    second.tilt_deg = [0.0, 0.0];
-    theatre.planes.push(second);
-    theatre
 }
 
 /// Every source alone against midpoint sums, one of them (the wrong tilt) as a negative control.
@@ -217,51 +202,6 @@ fn a_target_error_is_reached_and_replayed() {
         hurried.radiance,
         draw(&theatre, &view, hurried.stats.counts["spp"] as u32, knobs.seed).radiance
     );
-}
-
-fn on_gpu(theatre: &Theatre, view: &View, wgsl: &str) -> Frame {
-    let knobs = Knobs { spp: 256, seed: 3, ..Knobs::default() };
-    Mc::new(knobs, Tracer::with_shader(wgsl)).radiance(theatre, view).unwrap()
-}
-
-/// Largest difference of any channel of radiance in units of the brightest unshadowed pixel of `a`'s red.
-fn distance(a: &Frame, b: &Frame) -> f32 {
-    let full = a.radiance.iter().flatten().fold(0f32, |m, v| m.max(*v));
-    let pairs = a.radiance.iter().flatten().zip(b.radiance.iter().flatten());
-    pairs.map(|(a, b)| (a - b).abs() / full).fold(0.0, f32::max)
-}
-
-/// The GPU draws the very same points, so it differs from the CPU by f32 rounding alone: at worst one of 256 samples
-/// falls on the other side of a texel's edge. A shader whose weights are 2 % off must be told apart.
-#[test]
-fn gpu_agrees_with_cpu() {
-    let mut several = theatre(edge(3), Ambient::Paper { k_d_m: 1.0, s: [0.3, 0.2, 0.1] });
-    let mut second = several.planes[0].clone();
-    second.centre_m = DVec3::new(0.1, 0.1, -0.7);
-    second.mask = Arc::new(edge(1));
-    several.planes.push(second);
-    let scenes =
-        [(theatre(edge(1), Ambient::None), Pixel::Centre), (several, Pixel::Area), (crooked(), Pixel::Area)];
-    let bare = Theatre { planes: vec![], ..scenes[0].0.clone() };
-    let view_all = View { skip: false, ..view(Pixel::Area) };
-    assert!(distance(&draw(&bare, &view_all, 256, 3), &on_gpu(&bare, &view_all, WGSL)) < 1e-6);
-    for (theatre, pixel) in scenes {
-        let view = view(pixel);
-        let cpu = draw(&theatre, &view, 256, 3);
-        let gpu = on_gpu(&theatre, &view, WGSL);
-        assert!(distance(&cpu, &gpu) < 5e-4, "{}", distance(&cpu, &gpu));
-        for (name, values) in cpu.channels().filter(|(name, _)| name.contains('.')) {
-            let worst =
-                values.iter().zip(channel(&gpu, &name)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-            assert!(worst < 5e-3, "{name}: {worst}");
-        }
-        assert_ne!(
-            cpu.radiance, gpu.radiance,
-            "the GPU's sums are f32, the CPU's f64: equal bits were not drawn twice"
-        );
-        let wrong = WGSL.replace("(1.0 / (w * w))", "(0.98 / (w * w))");
-        assert!(distance(&cpu, &on_gpu(&theatre, &view, &wrong)) > 5e-3);
-    }
 }
 
 /// Over a pixel, visibility is the mean of E over the mean of E⁰, in MC as in the oracle. Neither the mean of E / E⁰ nor the

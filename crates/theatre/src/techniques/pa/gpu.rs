@@ -11,9 +11,11 @@
 mod answers;
 mod drawing;
 mod passes;
+mod scenes;
 mod screen;
 mod tables;
 mod targets;
+mod twins;
 mod words;
 mod work;
 
@@ -35,10 +37,11 @@ use crate::project::sides_m;
 
 use answers::{count, fill, scatter};
 use passes::Passes;
-pub(super) use passes::Shaders;
+use passes::Shaders;
 use screen::DeviceScreen;
 use tables::DeviceTables;
 use targets::{CELLS, Host, Layers, List, Target};
+pub(crate) use twins::twins;
 use words::ROW;
 use work::{ACROSS, Batch, MOST_ROWS, MOST_TILES, Stage, Work};
 
@@ -92,7 +95,7 @@ pub(super) fn renderer(gpu: Gpu, knobs: Knobs) -> Result<Box<dyn Renderer<Theatr
 }
 
 impl OnGpu {
-    /// Compiles `shaders`, which are the default ones but for tests that need wrong ones.
+    /// Compiles `shaders`, which are the default ones but for negative controls.
     pub(super) fn new(gpu: Gpu, knobs: Knobs, shaders: &Shaders) -> Result<Self, RenderError> {
         let entries = Srgb::get().entries();
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;

@@ -205,6 +205,30 @@ fn look_up_generic<const K: usize>(
     }
 }
 
+/// What the vector loops rely on, which load without a check: for the first `whole` columns, `loaded` entries of a row of `entries` from each
+/// end on, and the K weights of each.
+///
+/// # Panics
+/// Where a load would leave its slice.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn loads_stay_within<const K: usize>(
+    whole: usize,
+    (start, stop): (&[i32], &[i32]),
+    (entries, loaded): (usize, usize),
+    (start_before, stop_before): (&[f64], &[f64]),
+    count: usize,
+) {
+    if whole == 0 {
+        return;
+    }
+    // Ends grow from column to column and start at −K.
+    let last = start[whole - 1].max(stop[whole - 1]) + 2 * K as i32;
+    assert!(start[0] >= -(K as i32) && stop[0] >= -(K as i32) && last as usize + loaded <= entries);
+    let planes = (K - 1) * count + whole;
+    assert!(planes <= start_before.len() && planes <= stop_before.len());
+}
+
 /// [`look_up_generic`] on the best instruction set. Where neighbouring ends lie near each other (`spans`: pixels of less than two texels
 /// with AVX-512, of one with AVX2), a permutation stands for a gather; the arithmetic is the same to the bit.
 fn look_up<const K: usize>(

@@ -21,6 +21,7 @@
 mod gpu;
 mod map;
 mod native;
+mod twins;
 
 use std::ops::Bound;
 use std::sync::Arc;
@@ -39,6 +40,8 @@ use crate::irradiance::UnitImages;
 use crate::trace::sobol::{Points, REPLICATES, fold};
 use map::{Beam, Map};
 use native::{Row, Shader};
+
+pub(crate) use twins::twins;
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
 /// draws, in its own files or in what it shares with others. What was made before is then made anew.

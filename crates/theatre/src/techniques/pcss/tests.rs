@@ -1,72 +1,14 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use kelir_frame::Pixel;
-use kelir_scene::{Albedo, Emitter, Exposure, Lamp, Mask, Plane, Screen, Texels};
+use kelir_scene::Plane;
 use proptest::prelude::*;
 
+use super::twins::{blocks, crooked, edge, plane, square, theatre, view};
 use super::*;
 use crate::shaders::same_layout;
 use crate::{oracle, pa};
-
-fn emitter(shape: EmitterShape) -> Emitter {
-    Emitter { name: "lamp".into(), shape, radiance: [40.0, 30.0, 20.0] }
-}
-
-fn square(side: f64) -> EmitterShape {
-    EmitterShape::Rectangle { size_m: [side; 2] }
-}
-
-fn plane(mask: Mask, z: f64, size_m: [f64; 2]) -> Plane {
-    Plane { mask: Arc::new(mask), centre_m: DVec3::new(0.0, 0.0, z), size_m, tilt_deg: [0.0; 2] }
-}
-
-fn theatre(shape: EmitterShape, planes: Vec<Plane>) -> Theatre {
-    Theatre {
-        screen: Screen { width_m: 1.6, height_m: 0.9, albedo: Albedo::Uniform([0.8, 0.7, 0.6]) },
-        lamp: Lamp { position_m: DVec3::new(0.05, -0.02, -1.5), emitters: vec![emitter(shape)] },
-        ambient: Ambient::None,
-        planes,
-        exposure: Exposure::Auto,
-    }
-}
-
-/// Opaque for x < 0, higher than the screen.
-fn edge() -> Plane {
-    plane(Mask::new(2, 1, 1, Texels::U8(vec![0, 255])), -0.4, [3.0, 3.0])
-}
-
-/// Blocks of several greys.
-fn blocks(channels: usize) -> Mask {
-    let code =
-        |k: usize| if (k % 80 / 7 + k / 80 / 5).is_multiple_of(2) { (k / 4800 * 60 + 40) as u8 } else { 255 };
-    Mask::new(80, 60, channels, Texels::U8((0..4800 * channels).map(code).collect()))
-}
-
-/// Everything at once: two emitters of both shapes, coloured and tilted planes, the paper's ambient light.
-fn crooked() -> Theatre {
-    let mut scene = theatre(
-        square(0.1),
-        vec![
-            plane(blocks(3), -0.4, [0.8, 0.6]),
-            Plane {
-                tilt_deg: [20.0, -50.0],
-                centre_m: DVec3::new(0.2, 0.1, -0.8),
-                ..plane(blocks(1), 0.0, [0.3, 0.3])
-            },
-        ],
-    );
-    scene
-        .lamp
-        .emitters
-        .push(Emitter { name: "disk".into(), ..emitter(EmitterShape::Disk { radius_m: 0.08 }) });
-    scene.ambient = Ambient::Paper { k_d_m: 2.0, s: [0.3, 0.2, 0.1] };
-    scene
-}
-
-fn view(pixel: Pixel) -> View {
-    View { size: [96, 54], pixel, skip: true }
-}
 
 fn draw(theatre: &Theatre, knobs: Knobs, view: &View) -> Frame {
     renderer(&knobs, Backend::Cpu).unwrap().radiance(theatre, view).unwrap()
@@ -164,32 +106,6 @@ fn tilted_planes_are_nearly_right() {
     let errors = [0.0, 30.0, 60.0].map(error);
     assert!(errors[0] < 2e-3 && errors[1] < 0.01 && errors[2] < 0.03, "{errors:?}");
     assert!(errors[0] < errors[1] && errors[1] < errors[2], "{errors:?}");
-}
-
-/// Every texel is chosen in integers: the same image to the bit, of a theatre with everything in it. A shader that filters
-/// over the search's region in place of the penumbra does not pass.
-#[test]
-fn both_backends_draw_the_same() {
-    let gpu = || kelir_frame::gpu::choose(Backend::Gpu).unwrap().unwrap();
-    let view = view(Pixel::Area);
-    let knobs = Knobs { blocker_samples: 9, filter_samples: 20, map_size: 128, ..Knobs::default() };
-    for scene in [crooked(), theatre(square(0.1), vec![edge(), plane(blocks(1), -0.7, [0.5, 0.4])])] {
-        let cpu = draw(&scene, knobs, &view);
-        let mut on_gpu = renderer(&knobs, Backend::Gpu).unwrap();
-        for _ in 0..2 {
-            let frame = on_gpu.radiance(&scene, &view).unwrap();
-            assert_eq!(frame.radiance, cpu.radiance);
-            assert!(frame.visibilities.iter().zip(&cpu.visibilities).all(|(a, b)| a == b));
-        }
-        let mut codes = [vec![0; 96 * 54], vec![0; 96 * 54]];
-        on_gpu.display(&scene, &view, 30.0, &mut codes[0]).unwrap();
-        renderer(&knobs, Backend::Cpu).unwrap().display(&scene, &view, 30.0, &mut codes[1]).unwrap();
-        assert_eq!(codes[0], codes[1]);
-    }
-    let wrong = gpu::WGSL.replace("beam, centre, side, places", "beam, centre, reach, places");
-    assert_ne!(wrong, gpu::WGSL);
-    let mut wrong = Pcss::new(knobs, Some(gpu::OnGpu::new(gpu(), &wrong).unwrap()));
-    assert_ne!(wrong.radiance(&crooked(), &view).unwrap().radiance, draw(&crooked(), knobs, &view).radiance);
 }
 
 #[test]

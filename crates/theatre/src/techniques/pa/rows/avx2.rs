@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::look_up_generic;
+use super::{loads_stay_within, look_up_generic};
 
 /// Four windows at a time, whose ends lie less than four entries apart.
 #[target_feature(enable = "avx2")]
@@ -16,17 +16,11 @@ pub(super) fn near<const K: usize>(
 ) {
     let n = out.len();
     let whole = n - n % 4;
-    if whole > 0 {
-        // Ends grow from column to column and start at −K.
-        let last = start[whole - 1].max(stop[whole - 1]) + 2 * K as i32;
-        assert!(start[0] >= -(K as i32) && stop[0] >= -(K as i32));
-        assert!(last as usize + 4 <= sums.len().min(steps.len()));
-        let planes = (K - 1) * count + whole;
-        assert!(planes <= start_before.len() && planes <= stop_before.len());
-    }
+    let entries = sums.len().min(steps.len());
+    loads_stay_within::<K>(whole, (start, stop), (entries, 4), (start_before, stop_before), count);
     let (norm4, one, zero) = (_mm256_set1_pd(norm), _mm_set1_ps(1.0), _mm_setzero_ps());
     for at in (0..whole).step_by(4) {
-        // SAFETY: the assertions above; four ends from the first are less than four entries away from it.
+        // SAFETY: `loads_stay_within`; four ends from the first are less than four entries away from it.
         unsafe {
             // Where the first of four ends lies, and which pairs of 32 bits each of them is, from there on.
             let ends = |ends: &[i32]| {

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::look_up_generic;
+use super::{loads_stay_within, look_up_generic};
 
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
 pub(super) fn far<const K: usize>(
@@ -27,16 +27,10 @@ pub(super) fn near<const K: usize>(
 ) {
     let n = out.len();
     let whole = n - n % 8;
-    if whole > 0 {
-        // Ends grow from column to column and start at −K.
-        let last = start[whole - 1].max(stop[whole - 1]) + 2 * K as i32;
-        assert!(start[0] >= -(K as i32) && stop[0] >= -(K as i32) && last as usize + 16 <= sums.len());
-        let planes = (K - 1) * count + whole;
-        assert!(planes <= start_before.len() && planes <= stop_before.len());
-    }
+    loads_stay_within::<K>(whole, (start, stop), (sums.len(), 16), (start_before, stop_before), count);
     let (norm8, one, zero) = (_mm512_set1_pd(norm), _mm256_set1_ps(1.0), _mm256_setzero_ps());
     for at in (0..whole).step_by(8) {
-        // SAFETY: the assertions above; eight ends from the first are less than sixteen entries away from it.
+        // SAFETY: `loads_stay_within`; eight ends from the first are less than sixteen entries away from it.
         unsafe {
             let load = |ends: &[i32]| {
                 let first = *ends.get_unchecked(at);

@@ -1,10 +1,10 @@
 // Every button and link can be read, in every state, scheme and surround.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { inkOn, srgbCode } from "../../participant/layout.ts";
-import { contrasts, inEveryState } from "./contrast.mjs";
-import { consolePages, visits } from "./pages.mjs";
-import { visit } from "./visit.mjs";
+import { inkOn, srgbCode } from "../../../participant/layout.ts";
+import { contrasts, inEveryState } from "../contrast.mjs";
+import { consolePages, visits } from "../pages.mjs";
+import { visit } from "../visit.mjs";
 
 /** WCAG 2.2, 1.4.3 (AA): words against what is behind them; 1.4.11: what tells a button from the page. */
 const LEAST = 4.5;

@@ -1,10 +1,10 @@
 // axe finds nothing on any page, at desktop and phone size, in every language, in Chromium and in Firefox.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { violations } from "./axe.mjs";
-import { sizes } from "./chromium.mjs";
-import { consolePages, visits } from "./pages.mjs";
-import { visit } from "./visit.mjs";
+import { violations } from "../axe.mjs";
+import { sizes } from "../chromium.mjs";
+import { consolePages, visits } from "../pages.mjs";
+import { visit } from "../visit.mjs";
 
 /** What axe says of a page, with the page's name. */
 const found = async (page, where) => (await page.evaluate(`(${violations})()`)).map((sentence) => `${where}: ${sentence}`);

@@ -1,12 +1,12 @@
 // axe finds nothing in Firefox either: the participant's way in two languages, and the console's pages.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { results } from "../mock-results.ts";
-import { startMock } from "../mock-server.ts";
-import { material, study } from "../mock-study.ts";
-import { violations } from "./axe.mjs";
-import { hasFirefox, launchFirefox } from "./firefox.mjs";
-import { bundle } from "./visit.mjs";
+import { results } from "../../mock-results.ts";
+import { startMock } from "../../mock-server.ts";
+import { material, study } from "../../mock-study.ts";
+import { violations } from "../axe.mjs";
+import { hasFirefox, launchFirefox } from "../firefox.mjs";
+import { bundle } from "../visit.mjs";
 
 /** A Firefox and a mock server with one pair; `look` says what axe finds. */
 async function open(t) {

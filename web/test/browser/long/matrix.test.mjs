@@ -1,11 +1,11 @@
 // No dead ends: whatever browser, storage, clock and network do, a visit ends with the code or with a sentence that says what to do.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { startMock } from "../mock-server.ts";
-import { material, study } from "../mock-study.ts";
-import { hasFirefox, launchFirefox } from "./firefox.mjs";
-import { HURRY, troubles } from "./troubles.mjs";
-import { bundle, visit } from "./visit.mjs";
+import { startMock } from "../../mock-server.ts";
+import { material, study } from "../../mock-study.ts";
+import { hasFirefox, launchFirefox } from "../firefox.mjs";
+import { HURRY, troubles } from "../troubles.mjs";
+import { bundle, visit } from "../visit.mjs";
 
 /** Two trials are a study. */
 const short = () => {

@@ -1,14 +1,14 @@
 // Animations that begin while they come.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Line } from "../line.ts";
-import { startMock } from "../mock-server.ts";
-import { Maker, study } from "../mock-study.ts";
-import { PICTURES } from "../samples.ts";
-import { display } from "./display.mjs";
-import { hasFirefox, launchFirefox } from "./firefox.mjs";
-import { HURRY } from "./troubles.mjs";
-import { begin, bundle, rows, stored, visit } from "./visit.mjs";
+import { Line } from "../../line.ts";
+import { startMock } from "../../mock-server.ts";
+import { Maker, study } from "../../mock-study.ts";
+import { PICTURES } from "../../samples.ts";
+import { display } from "../display.mjs";
+import { hasFirefox, launchFirefox } from "../firefox.mjs";
+import { HURRY } from "../troubles.mjs";
+import { begin, bundle, rows, stored, visit } from "../visit.mjs";
 
 const MBIT = 1e6 / 8;
 const FPS = 30;
