@@ -18,3 +18,4 @@ mod refused;
 mod resampled;
 mod shipped;
 mod support;
+mod threads;
