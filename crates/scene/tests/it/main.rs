@@ -11,6 +11,7 @@ mod cloth;
 mod drawings;
 mod fuzz;
 mod good;
+mod mended;
 mod minute;
 mod parts;
 mod posed;

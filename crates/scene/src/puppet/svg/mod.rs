@@ -2,6 +2,7 @@
 
 mod cost;
 mod drawn;
+mod mend;
 mod parts;
 mod raster;
 mod size;
@@ -21,6 +22,9 @@ use self::style::Styles;
 use super::grid::{Lattice, Rect, Texture};
 use crate::colour::srgb8_to_linear;
 use crate::limits;
+
+pub use self::mend::Mended;
+pub(crate) use self::mend::mend;
 
 /// A checked SVG.
 pub(crate) struct Svg {
@@ -56,6 +60,13 @@ impl Svg {
         };
         if document.root_element().tag_name().name() != "svg" || !is_svg(document.root_element()) {
             refuse("is not an SVG: its root is no <svg> of the SVG namespace".to_owned());
+            return None;
+        }
+        if document.root_element().tag_name().namespace().is_none() {
+            refuse(format!(
+                "does not say that it is an SVG, so no program draws it: write xmlns=\"{}\" into its <svg>",
+                drawn::SVG
+            ));
             return None;
         }
         size::check(&document).unwrap_or_else(&mut refuse);

@@ -21,7 +21,7 @@ use self::ink::Ink;
 use self::outline::{Affine, edges, stroked};
 
 /// A texel of a drawing: its colour, encoded as sRGB, and how opaque it is.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct Texel {
     pub colour: [u8; 3],
     pub alpha: f32,
