@@ -12,6 +12,7 @@ const ABANDONED: Duration = Duration::from_secs(60);
 const ABANDONED_FOLDER: Duration = Duration::from_secs(3600);
 
 /// Writes `bytes` beside `path` and renames: whoever is interrupted leaves no half-written file, at most `NAME.PROCESS.NUMBER.part`, which
+<<<<<<< HEAD
 /// a later write of the same file removes. Missing folders are made. A device or a pipe is written to, and stays what it is.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
     if is_stream(path) {
@@ -19,14 +20,33 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
     }
     let part = part_of(path)?;
     let written = std::fs::write(&part.path, bytes).and_then(|()| std::fs::rename(&part.path, path));
+=======
+/// a later write of the same file removes. Missing folders are made. What a link leads to is written; a device or pipe is written to as it is.
+pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
+    if is_special(path) {
+        return std::fs::write(path, bytes).map_err(|source| named(path, source));
+    }
+    let place = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let part = part_of(&place)?;
+    let written = std::fs::write(&part.path, bytes).and_then(|()| std::fs::rename(&part.path, &place));
+>>>>>>> d948d15
     written.map_err(|source| named(path, source))
+}
+
+/// Whether there is something that is neither file nor folder, in whose place no file may be put: a device, a pipe.
+fn is_special(path: &Path) -> bool {
+    path.metadata().is_ok_and(|about| !about.is_file() && !about.is_dir())
 }
 
 /// Tries whether a file can be written, and leaves nothing of it: what can't be is told before anything is drawn.
 ///
 /// Errors: what the system says, and a folder in the file's place.
 pub fn try_writing(path: &Path) -> Result<(), RenderError> {
+<<<<<<< HEAD
     if is_stream(path) {
+=======
+    if is_special(path) {
+>>>>>>> d948d15
         return Ok(());
     }
     let part = part_of(path)?;
@@ -129,6 +149,26 @@ mod tests {
         let error = write_atomic(&folder.path().join("a/c.png"), b"x").unwrap_err();
         assert!(error.to_string().contains("c.png"), "{error}");
         assert_eq!(std::fs::read_dir(folder.path().join("a")).unwrap().count(), 2);
+    }
+
+    /// As root, a file in a device's place would be all that is left of it.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_and_links_stay_what_they_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let link = |name: &str, target: &Path| {
+            let path = folder.path().join(name);
+            std::os::unix::fs::symlink(target, &path).unwrap();
+            path
+        };
+        let full = link("full.png", Path::new("/dev/full"));
+        try_writing(&full).unwrap();
+        assert!(write_atomic(&full, b"x").unwrap_err().to_string().contains("full.png"));
+        let file = folder.path().join("file.png");
+        std::fs::write(&file, b"one").unwrap();
+        write_atomic(&link("link.png", &file), b"two").unwrap();
+        assert_eq!(std::fs::read(&file).unwrap(), b"two");
+        assert!(full.is_symlink() && folder.path().join("link.png").is_symlink());
     }
 
     #[test]

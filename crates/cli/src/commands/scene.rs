@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use kelir_house::shipped::{self, SceneRefused, Shipped};
-use kelir_scene::Scene;
+use kelir_render::file;
+use kelir_scene::{Mending, Scene};
 use serde::Serialize;
 use serde_json::json;
 
@@ -23,6 +24,10 @@ pub(crate) enum Command {
         /// Print one JSON document.
         #[arg(long)]
         json: bool,
+        /// Write the drawing of the one scene file that is refused or warned about, mended so that it is accepted and looks the same, and say what was
+        /// changed; nothing is written where that can't be done.
+        #[arg(long, value_name = "OUT.svg", conflicts_with = "json")]
+        fix_drawing: Option<PathBuf>,
     },
     /// List the scenes that ship: any of them may be drawn by its name.
     List {
@@ -35,7 +40,8 @@ pub(crate) enum Command {
 /// Runs the command.
 pub(crate) fn run(command: Command) -> Result<()> {
     match command {
-        Command::Check { files, json } => check(&files, json),
+        Command::Check { files, fix_drawing: Some(out), .. } => fix_drawing(&files, &out),
+        Command::Check { files, json, .. } => check(&files, json),
         Command::List { json } => list(json),
     }
 }
@@ -57,6 +63,46 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
         }
     }
     checked.finish()
+}
+
+/// Mends the one drawing of a scene that needs it.
+fn fix_drawing(files: &[PathBuf], out: &Path) -> Result<()> {
+    let [scene] = files else {
+        return Err(bad_input("--fix-drawing mends a drawing of one scene file: name one"));
+    };
+    if !shipped::is_file(scene) {
+        return Err(bad_input(format!(
+            "{} ships, and its drawings are good: name a scene file",
+            scene.display()
+        )));
+    }
+    let mut mendings = kelir_scene::mend(scene).map_err(bad_input)?;
+    let Some(Mending { drawing, result }) = mendings.pop() else {
+        return print(&format!("{}: no drawing needs mending; nothing is written", scene.display()));
+    };
+    if !mendings.is_empty() {
+        let all: Vec<String> =
+            mendings.iter().map(|m| &m.drawing).chain([&drawing]).map(|d| d.display().to_string()).collect();
+        return Err(bad_input(format!("{} need mending: check scenes of one of them each", all.join(", "))));
+    }
+    let label = drawing.display();
+    let mended = result.map_err(|wrong| {
+        let wrong: Vec<String> = wrong.iter().map(|rule| format!("{label}: {rule}")).collect();
+        bad_input(format!(
+            "{}\nthis can't be mended without changing what is seen; nothing is written",
+            wrong.join("\n")
+        ))
+    })?;
+    let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+    if same(out, &drawing) {
+        return Err(bad_input(format!(
+            "{} is the drawing itself, which is kept: name another file",
+            out.display()
+        )));
+    }
+    file::write_atomic(out, mended.svg.as_bytes())?;
+    print(&format!("{}: {label}, mended:", out.display()))?;
+    mended.changes.iter().try_for_each(|change| print(&format!("  {change}")))
 }
 
 fn name(file: &Path) -> String {

@@ -28,6 +28,8 @@ pub(crate) struct Plate<'a, C, const L: usize> {
 pub(crate) trait Code: Copy + Send + Sync + Sized {
     /// The code that lets everything through.
     const CLEAR: Self;
+    /// The transmittance of a code.
+    fn transmittance(self) -> f32;
     /// Nearest code of a transmittance in [0, 1].
     fn nearest(transmittance: f32) -> Self;
     /// Texels of this code; none of another.
@@ -39,6 +41,9 @@ const ROUND: f32 = 8_388_608.0;
 
 impl Code for u8 {
     const CLEAR: u8 = u8::MAX;
+    fn transmittance(self) -> f32 {
+        f32::from(self) / 255.0
+    }
     fn nearest(transmittance: f32) -> u8 {
         (transmittance * 255.0 + ROUND).to_bits() as u8
     }
@@ -49,6 +54,9 @@ impl Code for u8 {
 
 impl Code for u16 {
     const CLEAR: u16 = u16::MAX;
+    fn transmittance(self) -> f32 {
+        f32::from(self) / 65535.0
+    }
     fn nearest(transmittance: f32) -> u16 {
         (transmittance * 65535.0 + ROUND).to_bits() as u16
     }

@@ -5,6 +5,8 @@
 
 use rayon::prelude::*;
 
+use super::compose::Code;
+
 /// A rectangle of whole texels, empty when an end is not beyond its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rect {
@@ -209,6 +211,16 @@ impl Texture {
             }
         });
         Self { rect, lanes, opacity: values }
+    }
+
+    /// The share of its opacity that its codes have too much or too little, all texels together.
+    pub(crate) fn missed<C: Code>(&self) -> f64 {
+        let (mut all, mut coded) = (0.0, 0.0);
+        for opacity in self.opacity.iter().filter(|opacity| **opacity > 0.0) {
+            all += f64::from(*opacity);
+            coded += f64::from(1.0 - C::nearest(1.0 - opacity).transmittance());
+        }
+        if all > 0.0 { (coded / all - 1.0).abs() } else { 0.0 }
     }
 
     /// A grey texture as a coloured one.

@@ -111,10 +111,15 @@ pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<E
         let rule = "a puppet's grid has 64 to 8192 rows";
         n.integer_in(64..=limits::IMAGE_SIDE as i64, rule).map(|rows| Some(rows as usize))
     });
-    let bits = fields.optional("bits", "bits a texel, 8 or 16; without it 8", 8, |n| {
-        let bits = n.integer()?;
-        if bits == 8 || bits == 16 { Some(bits as u32) } else { n.refuse("a mask has 8 or 16 bits") }
-    });
+    let bits = fields.optional(
+        "bits",
+        "bits a texel, 8 or 16; without it 8, or 16 where 8 would miss a hundredth of what the puppet covers",
+        None,
+        |n| match n.integer()? {
+            bits @ (8 | 16) => Some(Some(bits as u32)),
+            _ => n.refuse("a mask has 8 or 16 bits"),
+        },
+    );
     fields.done();
 
     let (art, height_m, translucent, bits) = (art?, height_m?, translucent?, bits?);
@@ -242,11 +247,15 @@ fn turns(parts: &[Part], part: usize) -> bool {
     std::iter::successors(Some(part), |p| parts.get(*p)?.parent).any(|p| parts[p].pivot.is_some())
 }
 
+/// The share of a puppet's opacity that its codes may miss.
+const MISSED: f64 = 0.01;
+
 /// How a drawing's alpha and colours become texels.
 struct Surface {
     translucent: bool,
     alpha: Option<AlphaFrom>,
-    bits: u32,
+    /// Of a texel's codes, if it was said.
+    bits: Option<u32>,
 }
 
 fn rasterise(image: &Node, art: &Art, lattice: Lattice, surface: Surface) -> Option<Figure> {
@@ -281,5 +290,10 @@ fn rasterise(image: &Node, art: &Art, lattice: Lattice, surface: Surface) -> Opt
             part.id
         ));
     }
-    Some(Figure::new(lattice, &parts, textures, bits))
+    let all = || textures.iter().flat_map(|(texture, whole)| std::iter::once(texture).chain(whole));
+    let misses = all().any(|texture| texture.missed::<u8>() > MISSED);
+    if misses && bits == Some(8) {
+        image.warn("has threads so thin, or tones so faint, that 8 bits a texel miss more than a hundredth of what they cover; say bits = 16, or leave bits out");
+    }
+    Some(Figure::new(lattice, &parts, textures, bits.unwrap_or(if misses { 16 } else { 8 })))
 }

@@ -1,12 +1,12 @@
 //! What drawing an SVG would cost, from its elements' bounds, before it is drawn.
 
 use resvg::tiny_skia::{PathSegment, Point};
-use resvg::usvg::{Group, Node, Path, Tree};
+use resvg::usvg::{Group, Node, Paint, Path, Tree};
 
 /// Texels filled, all elements and layers together: ten seconds or so.
 const MOST_FILLED: f64 = (1u64 << 34) as f64;
-/// Texels of layers held at once, four bytes each.
-const MOST_LAYERED: f64 = (1u64 << 28) as f64;
+/// Rows that straight pieces of outlines cross, all together: ten seconds or so.
+const MOST_CROSSED: f64 = (1u64 << 26) as f64;
 /// Dashes of all strokes together.
 const MOST_DASHES: f64 = 1e6;
 
@@ -14,7 +14,7 @@ const MOST_DASHES: f64 = 1e6;
 #[derive(Clone, Copy, Default)]
 pub(super) struct Cost {
     filled: f64,
-    layered: f64,
+    crossed: f64,
     dashes: f64,
 }
 
@@ -23,24 +23,26 @@ impl Cost {
     pub(super) fn and(self, other: Cost) -> Cost {
         Cost {
             filled: self.filled + other.filled,
-            layered: self.layered.max(other.layered),
+            crossed: self.crossed + other.crossed,
             dashes: self.dashes + other.dashes,
         }
     }
 
     /// The rule that is broken, if one is.
     pub(super) fn check(&self) -> Result<(), String> {
-        let Cost { filled, layered, dashes } = *self;
+        let Cost { filled, crossed, dashes } = *self;
         // A NaN, from bounds that overflowed, is over every limit.
         let over = |cost: f64, most: f64| cost.partial_cmp(&most).is_none_or(std::cmp::Ordering::is_gt);
         if over(filled, MOST_FILLED) {
             return Err(format!("fills {filled:.1e} texels, overlaps counted; at most {MOST_FILLED:.1e}"));
         }
-        if over(layered, MOST_LAYERED) {
-            return Err(format!("needs layers of {layered:.1e} texels at once; at most {MOST_LAYERED:.1e}"));
-        }
         if over(dashes, MOST_DASHES) {
             return Err(format!("strokes {dashes:.1e} dashes; at most {MOST_DASHES:.1e}"));
+        }
+        if over(crossed, MOST_CROSSED) {
+            return Err(format!(
+                "crosses rows of texels {crossed:.1e} times with its outlines; at most {MOST_CROSSED:.1e}"
+            ));
         }
         Ok(())
     }
@@ -64,17 +66,16 @@ fn of_group(group: &Group, scale: f64, canvas: [f64; 2]) -> Cost {
         });
     }
     if group.should_isolate() {
-        // resvg keeps layers up to five canvases wide and high.
         let layer = group.abs_layer_bounding_box();
-        let side = |extent: f32, canvas: f64| (f64::from(extent) * scale + 2.0).min(5.0 * canvas);
+        let side = |extent: f32, canvas: f64| (f64::from(extent) * scale + 2.0).min(canvas);
         let texels = side(layer.width(), canvas[0]) * side(layer.height(), canvas[1]);
         // Clips and masks are drawn on layers of their own.
-        let clip = group.clip_path().map(|clip| of_group(clip.root(), scale, canvas));
-        let mask = group.mask().map(|mask| of_group(mask.root(), scale, canvas));
-        let extra = 1.0 + f64::from(u8::from(clip.is_some())) + f64::from(u8::from(mask.is_some()));
-        cost = cost.and(clip.unwrap_or_default()).and(mask.unwrap_or_default());
-        cost.filled += texels * extra;
-        cost.layered += texels * extra;
+        let others = [group.clip_path().map(|clip| clip.root()), group.mask().map(|mask| mask.root())];
+        cost.filled += texels;
+        for other in others.into_iter().flatten() {
+            cost = cost.and(of_group(other, scale, canvas));
+            cost.filled += texels;
+        }
     }
     cost
 }
@@ -87,29 +88,56 @@ fn of_path(path: &Path, scale: f64, canvas: [f64; 2]) -> Cost {
         let period: f32 = dashes.iter().sum();
         dashes.len() as f64 * (length(path) / f64::from(period) + 1.0)
     });
-    let fills = f64::from(u8::from(path.fill().is_some())) + f64::from(u8::from(path.stroke().is_some()));
-    Cost { filled: area * fills, layered: 0.0, dashes }
-}
-
-/// An upper bound of a path's length: curves are no longer than their control polygons.
-fn length(path: &Path) -> f64 {
-    let mut sum = 0.0;
-    let (mut start, mut last) = (Point::zero(), Point::zero());
-    for segment in path.data().segments() {
-        let points: &[Point] = match &segment {
-            PathSegment::MoveTo(p) => {
-                (start, last) = (*p, *p);
-                continue;
-            }
-            PathSegment::LineTo(p) => &[*p],
-            PathSegment::QuadTo(a, b) => &[*a, *b],
-            PathSegment::CubicTo(a, b, c) => &[*a, *b, *c],
-            PathSegment::Close => &[start],
-        };
-        for point in points {
-            sum += f64::from(point.distance(last));
-            last = *point;
+    let (fills, strokes) = (path.fill().is_some(), path.stroke().is_some());
+    // A stroke has two sides, and every corner and dash its ends.
+    let outlines = f64::from(u8::from(fills)) + 2.0 * f64::from(u8::from(strokes));
+    let corners = path.data().len() as f64 + dashes;
+    let crossed = outlines * (steps(path, scale, canvas[1]) + 8.0 * corners);
+    let mut cost =
+        Cost { filled: area * (f64::from(u8::from(fills)) + f64::from(u8::from(strokes))), crossed, dashes };
+    let paints = [path.fill().map(|fill| fill.paint()), path.stroke().map(|stroke| stroke.paint())];
+    for paint in paints.into_iter().flatten() {
+        if let Paint::Pattern(pattern) = paint {
+            cost = cost.and(of_group(pattern.root(), scale, canvas));
         }
     }
-    sum
+    cost
+}
+
+/// An upper bound of a path's length.
+fn length(path: &Path) -> f64 {
+    legs(path).map(|[from, to]| f64::from(to.distance(from))).sum()
+}
+
+/// Rows that a path's legs cross, none more than all `rows`.
+fn steps(path: &Path, scale: f64, rows: f64) -> f64 {
+    let transform = path.abs_transform();
+    let row =
+        |p: Point| f64::from(transform.ky).mul_add(f64::from(p.x), f64::from(transform.sy) * f64::from(p.y));
+    legs(path).map(|[from, to]| ((row(to) - row(from)).abs() * scale).min(rows)).sum()
+}
+
+/// The legs of a path's control polygon: curves are no longer, and cross no more, than it.
+fn legs(path: &Path) -> impl Iterator<Item = [Point; 2]> {
+    let (mut start, mut last) = (Point::zero(), Point::zero());
+    path.data().segments().flat_map(move |segment| {
+        let points = match segment {
+            PathSegment::MoveTo(p) => {
+                (start, last) = (p, p);
+                vec![]
+            }
+            PathSegment::LineTo(p) => vec![p],
+            PathSegment::QuadTo(a, b) => vec![a, b],
+            PathSegment::CubicTo(a, b, c) => vec![a, b, c],
+            PathSegment::Close => vec![start],
+        };
+        let from = last;
+        last = points.last().copied().unwrap_or(last);
+        let legs: Vec<[Point; 2]> = std::iter::once(from)
+            .chain(points.iter().copied())
+            .zip(points.iter().copied())
+            .map(|(a, b)| [a, b])
+            .collect();
+        legs
+    })
 }

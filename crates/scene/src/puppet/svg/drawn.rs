@@ -38,6 +38,12 @@ pub(super) fn is_svg(node: Node) -> bool {
     node.is_element() && matches!(node.tag_name().namespace(), None | Some(SVG))
 }
 
+/// Whether SVG has an element of this name, drawn or not.
+pub(super) fn is_known(name: &str) -> bool {
+    let refused = || REFUSED.iter().any(|(refused, _)| *refused == name);
+    [CONTAINERS, SHAPES, UNDRAWN].iter().any(|names| names.contains(&name)) || name == "use" || refused()
+}
+
 /// What was found on a walk over everything that is drawn, each thing once.
 #[derive(Default)]
 pub(super) struct Found {
@@ -92,8 +98,7 @@ impl<'a> Walk<'a> {
             }
             return 1;
         }
-        if !(CONTAINERS.contains(&name) || SHAPES.contains(&name) || name == "use" || UNDRAWN.contains(&name))
-        {
+        if !is_known(name) {
             self.refuse(format!(
                 "has <{name}>, which is none of SVG's elements; delete it, or export as plain SVG"
             ));

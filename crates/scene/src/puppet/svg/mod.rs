@@ -1,25 +1,30 @@
-//! SVG puppets: what is drawn of them is checked, then rasterised part by part with resvg.
+//! SVG puppets: what is drawn of them is checked, then rasterised part by part.
 
 mod cost;
 mod drawn;
+mod mend;
 mod parts;
+mod raster;
 mod size;
 mod style;
 mod text;
 
 use std::collections::HashSet;
 
-use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::roxmltree::Document;
 use resvg::usvg::{ImageHrefResolver, Options, Tree};
 
 use self::drawn::{Found, Walk, is_svg};
 use self::parts::Group;
+use self::raster::Texel;
 use self::size::Units;
 use self::style::Styles;
 use super::grid::{Lattice, Rect, Texture};
 use crate::colour::srgb8_to_linear;
 use crate::limits;
+
+pub use self::mend::Mended;
+pub(crate) use self::mend::mend;
 
 /// A checked SVG.
 pub(crate) struct Svg {
@@ -55,6 +60,13 @@ impl Svg {
         };
         if document.root_element().tag_name().name() != "svg" || !is_svg(document.root_element()) {
             refuse("is not an SVG: its root is no <svg> of the SVG namespace".to_owned());
+            return None;
+        }
+        if document.root_element().tag_name().namespace().is_none() {
+            refuse(format!(
+                "does not say that it is an SVG, so no program draws it: write xmlns=\"{}\" into its <svg>",
+                drawn::SVG
+            ));
             return None;
         }
         size::check(&document).unwrap_or_else(&mut refuse);
@@ -111,24 +123,14 @@ impl Svg {
     /// Opacities α(1 − T) of part `part` on the texels of `within`.
     pub(crate) fn texture(&self, part: usize, lattice: &Lattice, within: Rect, translucent: bool) -> Texture {
         let tree = &self.trees[part];
-        let scale = lattice.rows as f32 / tree.size().height();
-        let [left, top] = [lattice.margin - within.x0 as f64, -within.y0 as f64];
-        let transform = Transform::from_row(scale, 0.0, 0.0, scale, left as f32, top as f32);
-        let mut pixmap =
-            Pixmap::new(within.width() as u32, within.height() as u32).expect("a checked grid has texels");
-        resvg::render(tree, transform, &mut pixmap.as_mut());
-        let pixels = pixmap.pixels();
+        let scale = lattice.rows as f64 / f64::from(tree.size().height());
+        let shift = [lattice.margin - within.x0 as f64, -within.y0 as f64];
+        let texels = raster::draw(tree, scale, shift, [within.width(), within.height()]);
         let linear = srgb8_to_linear();
-        let opacity = |p: PremultipliedColorU8| {
-            let alpha = f32::from(p.alpha()) / 255.0;
-            if !translucent || p.alpha() == 0 {
-                return [alpha; 3];
-            }
-            let colour = p.demultiply();
-            [colour.red(), colour.green(), colour.blue()].map(|c| alpha * (1.0 - linear[c as usize]))
-        };
-        let at = |x: i64, y: i64| (y - within.y0) as usize * within.width() + (x - within.x0) as usize;
-        Texture::new(within, |x, y| opacity(pixels[at(x, y)]))
+        Texture::new(within, |x, y| {
+            let Texel { colour, alpha } = texels[(y - within.y0) as usize][(x - within.x0) as usize];
+            if translucent { colour.map(|c| alpha * (1.0 - linear[c as usize])) } else { [alpha; 3] }
+        })
     }
 }
 

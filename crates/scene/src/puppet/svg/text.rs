@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use resvg::usvg::roxmltree::{Document, ParsingOptions};
+use resvg::usvg::roxmltree::{Document, Error, ParsingOptions};
 
 use crate::limits;
 
@@ -44,9 +44,14 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, String> {
 
 /// Parses with document types but without anything from outside of the file.
 pub(super) fn parse(text: &str) -> Result<Document<'_>, String> {
+    unchecked(text).map_err(|error| format!("is not an SVG: {error}"))
+}
+
+/// As [`parse`], with the parser's own error.
+pub(super) fn unchecked(text: &str) -> Result<Document<'_>, Error> {
     let nodes_limit = 4 * limits::SVG_ELEMENTS as u32;
     let options = ParsingOptions { nodes_limit, allow_dtd: true, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options).map_err(|error| format!("is not an SVG: {error}"))
+    Document::parse_with_options(text, options)
 }
 
 /// The text with the root's width and height in pixels where they are in units that usvg does not know; `None` where all are known.
