@@ -12,15 +12,6 @@ const ABANDONED: Duration = Duration::from_secs(60);
 const ABANDONED_FOLDER: Duration = Duration::from_secs(3600);
 
 /// Writes `bytes` beside `path` and renames: whoever is interrupted leaves no half-written file, at most `NAME.PROCESS.NUMBER.part`, which
-<<<<<<< HEAD
-/// a later write of the same file removes. Missing folders are made. A device or a pipe is written to, and stays what it is.
-pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
-    if is_stream(path) {
-        return std::fs::write(path, bytes).map_err(|source| named(path, source));
-    }
-    let part = part_of(path)?;
-    let written = std::fs::write(&part.path, bytes).and_then(|()| std::fs::rename(&part.path, path));
-=======
 /// a later write of the same file removes. Missing folders are made. What a link leads to is written; a device or pipe is written to as it is.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
     if is_special(path) {
@@ -29,7 +20,6 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), RenderError> {
     let place = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let part = part_of(&place)?;
     let written = std::fs::write(&part.path, bytes).and_then(|()| std::fs::rename(&part.path, &place));
->>>>>>> d948d15
     written.map_err(|source| named(path, source))
 }
 
@@ -42,20 +32,11 @@ fn is_special(path: &Path) -> bool {
 ///
 /// Errors: what the system says, and a folder in the file's place.
 pub fn try_writing(path: &Path) -> Result<(), RenderError> {
-<<<<<<< HEAD
-    if is_stream(path) {
-=======
     if is_special(path) {
->>>>>>> d948d15
         return Ok(());
     }
     let part = part_of(path)?;
     std::fs::File::create(&part.path).map(drop).map_err(|source| named(path, source))
-}
-
-/// Whether something that is neither a file nor a folder stands there: `/dev/null`, a pipe.
-fn is_stream(path: &Path) -> bool {
-    std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
 }
 
 fn part_of(path: &Path) -> Result<Part, RenderError> {
