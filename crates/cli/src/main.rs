@@ -8,7 +8,7 @@ mod progress;
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use kelir_render::Isa;
 
 /// A platform for perceptual studies of shadows: render, ask, store, judge.
@@ -87,8 +87,21 @@ fn without_device_select() {
     }
 }
 
+/// The command line; `--time -1` is a value that its own rule refuses, not a flag `-1` that nobody meant.
+fn command_line() -> clap::Command {
+    fn with_negative_numbers(command: clap::Command) -> clap::Command {
+        command
+            .mut_args(
+                |arg| if arg.get_action().takes_values() { arg.allow_negative_numbers(true) } else { arg },
+            )
+            .mut_subcommands(with_negative_numbers)
+    }
+    with_negative_numbers(Cli::command())
+}
+
 fn main() -> ExitCode {
-    let command = Cli::parse().command;
+    let command =
+        Cli::from_arg_matches(&command_line().get_matches()).unwrap_or_else(|error| error.exit()).command;
     #[cfg(all(unix, feature = "gpu"))]
     if matches!(command, Command::Render(_) | Command::Animate(_) | Command::Bench(_)) {
         without_device_select();

@@ -32,7 +32,6 @@ fn option((knob, owners): (&'static Knob, Vec<&'static str>)) -> Arg {
         .long(knob.name.replace('_', "-"))
         .value_name(if knob.unit.is_empty() { "VALUE".to_owned() } else { knob.unit.to_uppercase() })
         .help_heading("Knobs")
-        .allow_negative_numbers(true)
         .help(help);
     match knob.name.strip_suffix("_s").or(knob.name.strip_suffix("_m")) {
         Some(short) => option.alias(short.replace('_', "-")),

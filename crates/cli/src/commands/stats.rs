@@ -49,7 +49,7 @@ enum Test {
         #[arg(long, value_parser = parse_counts, allow_hyphen_values = true)]
         counts: Counts,
         /// The mean under the null hypothesis.
-        #[arg(long, allow_negative_numbers = true)]
+        #[arg(long)]
         mu: f64,
         #[command(flatten)]
         printed: Printed,

@@ -69,6 +69,8 @@ fn what_can_be_mended_is_the_same_picture() {
         assert!(read(folder.path()).unwrap().warnings().is_empty(), "{}", mended.svg);
         assert!(seen(&mended.svg) == seen(&same), "{}", mended.svg);
     }
+    // What only does not say that it is an SVG is drawn as it is.
+    assert!(seen(&good.replace(XMLNS, "")) == seen(&good));
     // Bytes that are no UTF-8.
     let latin: Vec<u8> = within("<!-- é -->").chars().map(|c| c as u32 as u8).collect();
     let mended = mend(&folder(&latin).path().join("scene.toml")).unwrap().remove(0).result.unwrap();

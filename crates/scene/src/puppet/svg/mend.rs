@@ -77,7 +77,7 @@ fn readable(bytes: &[u8], changes: &mut Vec<String>) -> Option<String> {
             changes.push(format!("the prefix {prefix} is declared"));
         }
     }
-    if text::parse(&svg).ok()?.root_element().tag_name().namespace().is_none() {
+    if text::is_unnamed(&text::parse(&svg).ok()?) {
         declare(&mut svg, &format!("xmlns=\"{SVG}\""))?;
         changes.push(format!("its root says that it is an SVG: xmlns=\"{SVG}\""));
     }
@@ -201,7 +201,7 @@ fn apply(svg: &str, mut edits: Vec<(Range<usize>, String)>) -> String {
 /// Whether two drawings are the same picture.
 fn alike(before: &str, after: &str) -> bool {
     let drawn = |svg: &str| {
-        let known = text::parse(svg).ok().and_then(|document| text::in_known_units(&document, svg));
+        let known = text::parse(svg).ok().and_then(|document| text::understood(&document, svg));
         let tree = tree(&text::parse(known.as_deref().unwrap_or(svg)).ok()?, String::new()).ok()?;
         let scale = ROWS / f64::from(tree.size().height());
         let columns = (f64::from(tree.size().width()) * scale).ceil().clamp(1.0, 16.0 * ROWS);

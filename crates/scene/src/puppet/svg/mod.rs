@@ -53,20 +53,14 @@ impl Svg {
         }
         let text = text::decode(bytes).map_err(&mut refuse).ok()?;
         let written = text::parse(&text).map_err(&mut refuse).ok()?;
-        let known = text::in_known_units(&written, &text);
+        let unnamed = text::is_unnamed(&written);
+        let known = text::understood(&written, &text);
         let document = match &known {
             Some(known) => text::parse(known).map_err(&mut refuse).ok()?,
             None => written,
         };
         if document.root_element().tag_name().name() != "svg" || !is_svg(document.root_element()) {
             refuse("is not an SVG: its root is no <svg> of the SVG namespace".to_owned());
-            return None;
-        }
-        if document.root_element().tag_name().namespace().is_none() {
-            refuse(format!(
-                "does not say that it is an SVG, so no program draws it: write xmlns=\"{}\" into its <svg>",
-                drawn::SVG
-            ));
             return None;
         }
         size::check(&document).unwrap_or_else(&mut refuse);
@@ -93,7 +87,10 @@ impl Svg {
         let trees = trees(&document, &groups).map_err(&mut refuse).ok()?;
         let size = trees.first().map(|tree| [tree.size().width(), tree.size().height()].map(f64::from))?;
         let units = Units::of(&document, size).map_err(&mut refuse).ok()?;
-        Some(Self { size, units, odd: found.odd.into_iter().collect(), trees })
+        let unnamed = unnamed.then(|| {
+            format!("does not say that it is an SVG, so browsers draw nothing of it: write xmlns=\"{}\" into its <svg>", drawn::SVG)
+        });
+        Some(Self { size, units, odd: unnamed.into_iter().chain(found.odd).collect(), trees })
     }
 
     /// Whether it can be drawn on `rows` rows with bearable time and memory; the rule that it breaks otherwise.

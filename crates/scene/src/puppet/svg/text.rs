@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use resvg::usvg::roxmltree::{Document, Error, ParsingOptions};
 
+use super::drawn::SVG;
 use crate::limits;
 
 /// Bytes that entities may come to, written out: editors name namespaces by them, and nothing else.
@@ -54,8 +55,9 @@ pub(super) fn unchecked(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, options)
 }
 
-/// The text with the root's width and height in pixels where they are in units that usvg does not know; `None` where all are known.
-pub(super) fn in_known_units(document: &Document, text: &str) -> Option<String> {
+/// The text as usvg understands it: the root's width and height in pixels where they are in units that it does not know, and the root in SVG's
+/// namespace where it [has none](is_unnamed); `None` where all is well.
+pub(super) fn understood(document: &Document, text: &str) -> Option<String> {
     let root = document.root_element();
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
     for attribute in ["width", "height"].iter().filter_map(|name| root.attribute_node(*name)) {
@@ -71,9 +73,19 @@ pub(super) fn in_known_units(document: &Document, text: &str) -> Option<String> 
             if known == "q" { format!("{}px", number * 96.0 / 101.6) } else { format!("{number}{known}") };
         edits.push((attribute.range_value(), written));
     }
+    let name = root.range().start + "<svg".len();
+    if is_unnamed(document) && text[..name].ends_with("<svg") {
+        edits.push((name..name, format!(" xmlns=\"{SVG}\"")));
+    }
     edits.sort_by_key(|(range, _)| std::cmp::Reverse(range.start));
     let changed = !edits.is_empty();
     let mut known = text.to_owned();
     edits.into_iter().for_each(|(range, written)| known.replace_range(range, &written));
     changed.then_some(known)
+}
+
+/// Whether the root is an `<svg>` that does not say so: old drawings left that to their DOCTYPE, which gives it the namespace.
+pub(super) fn is_unnamed(document: &Document) -> bool {
+    let name = document.root_element().tag_name();
+    name.name() == "svg" && name.namespace().is_none()
 }
