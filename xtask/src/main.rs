@@ -183,7 +183,6 @@ fn test() -> Result<()> {
     step("web lint", npm("web", &["run", "lint"]))?;
     step("web types", npm("web", &["run", "check"]))?;
     step("web units", npm("web", &["test"]))?;
-    step("web pages", npm("web", &["run", "test:browser"]))?;
     step("browser driver", npm("tests", &["ci", "--ignore-scripts"]))?;
     step("lints", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
     step(
