@@ -13,7 +13,9 @@ pub use kelir_frame::{
     Backend, Frame, Isa, Meter, Pixel, RenderError, Renderer, Stats, View, Visibility, VisibilityModel,
     camera, encode, exposure, file, film, folder,
 };
-pub use kelir_theatre::{albedo, irradiance, mc, numerics, oracle, pa, pcss, penumbra, points, twins, white};
+#[cfg(feature = "gpu")]
+pub use kelir_theatre::twins;
+pub use kelir_theatre::{albedo, irradiance, mc, numerics, oracle, pa, pcss, penumbra, points, white};
 pub use techniques::{Technique, renderer};
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte whatever the technique:

@@ -9,6 +9,7 @@ use crate::output::Figures;
 mod accuracy;
 mod coverage;
 mod frames;
+#[cfg(feature = "gpu")]
 mod gpu;
 mod load;
 mod numerics;
@@ -34,6 +35,7 @@ pub(crate) enum Command {
     Accuracy(accuracy::Args),
     /// Whether the GPU draws what the native code draws, by every technique and with what must not pass, and how fast and exact both are: a
     /// minute or two. Fails where a comparison does not hold.
+    #[cfg(feature = "gpu")]
     Gpu(gpu::Args),
     /// How exact the numbers are, against values that were not derived from them: the renderer's stress cases against the oracle, unless
     /// an option asks for something else.
@@ -65,6 +67,7 @@ impl Command {
             Self::Frames { figures, .. } | Self::Numerics { figures, .. } => figures,
             Self::Accuracy(args) => &args.figures,
             Self::Coverage(args) => &args.figures,
+            #[cfg(feature = "gpu")]
             Self::Gpu(args) => &args.figures,
             Self::Load(args) => &args.figures,
             Self::Rows(args) => &args.figures,
@@ -88,6 +91,7 @@ fn measure(command: Command) -> Result<()> {
         }
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Coverage(args) => coverage::run(&args),
+        #[cfg(feature = "gpu")]
         Command::Gpu(args) => gpu::run(&args),
         Command::Numerics { stats: true, figures, .. } => numerics::statistics(&figures),
         Command::Numerics { curves: true, figures, .. } => numerics::curves(&figures),

@@ -27,7 +27,6 @@ mod tilted;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use kelir_frame::gpu::Gpu;
 use kelir_frame::{Backend, Frame, Isa, Meter, Pixel, RenderError, Stats, View, VisibilityModel};
 use kelir_scene::{Ambient, Theatre};
 
@@ -54,14 +53,13 @@ pub(crate) struct Tracer {
 impl Tracer {
     /// On `backend`. Errors: no adapter where there must be one.
     pub(crate) fn new(backend: Backend) -> Result<Self, RenderError> {
-        match kelir_frame::gpu::choose(backend)? {
-            Some(gpu) => Self::with_shader(&gpu, gpu::WGSL),
-            None => Ok(Self::of(None)),
-        }
+        let gpu = kelir_frame::gpu::choose(backend)?;
+        Ok(Self::of(gpu.map(|gpu| gpu::Sampler::new(gpu, gpu::WGSL)).transpose()?))
     }
 
     /// On `gpu`, with the right shader or, for a negative control, with one that is off.
-    pub(crate) fn with_shader(gpu: &Gpu, wgsl: &str) -> Result<Self, RenderError> {
+    #[cfg(feature = "gpu")]
+    pub(crate) fn with_shader(gpu: &kelir_frame::gpu::Gpu, wgsl: &str) -> Result<Self, RenderError> {
         Ok(Self::of(Some(gpu::Sampler::new(gpu.clone(), wgsl)?)))
     }
 

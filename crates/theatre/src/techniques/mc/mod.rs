@@ -5,6 +5,7 @@
 //! unbiased.
 
 mod budget;
+#[cfg(feature = "gpu")]
 mod twins;
 
 use std::ops::Bound;
@@ -18,6 +19,7 @@ use crate::knobs::{self, Knob, Range};
 use crate::trace::sobol::{Points, REPLICATES};
 use crate::trace::{Row, Tracer};
 
+#[cfg(feature = "gpu")]
 pub(crate) use twins::twins;
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique

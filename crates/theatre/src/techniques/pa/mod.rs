@@ -32,6 +32,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::knobs::{self, Knob, Range};
 
+#[cfg(feature = "gpu")]
 pub(crate) use gpu::twins;
 pub use native::Native;
 pub use skips::Skips;

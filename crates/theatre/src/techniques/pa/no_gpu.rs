@@ -5,12 +5,7 @@ use kelir_frame::{RenderError, Renderer};
 use kelir_scene::Theatre;
 
 use super::Knobs;
-use crate::twins::Twin;
 
 pub(super) fn renderer(gpu: Gpu, _: Knobs) -> Result<Box<dyn Renderer<Theatre>>, RenderError> {
     match gpu {}
-}
-
-pub(crate) fn twins(gpu: &Gpu) -> Result<Vec<Twin>, RenderError> {
-    match *gpu {}
 }

@@ -21,6 +21,7 @@
 mod gpu;
 mod map;
 mod native;
+#[cfg(feature = "gpu")]
 mod twins;
 
 use std::ops::Bound;
@@ -41,6 +42,7 @@ use crate::trace::sobol::{Points, REPLICATES, fold};
 use map::{Beam, Map};
 use native::{Row, Shader};
 
+#[cfg(feature = "gpu")]
 pub(crate) use twins::twins;
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique

@@ -14,8 +14,10 @@ use crate::knobs::{self, Knob, Range};
 use crate::trace::Tracer;
 use crate::trace::sobol::{Points, REPLICATES};
 
+#[cfg(feature = "gpu")]
 mod twins;
 
+#[cfg(feature = "gpu")]
 pub(crate) use twins::twins;
 
 /// Stands in the key of every job: raise it, and bless the golden images, with any change that can change a byte that this technique
