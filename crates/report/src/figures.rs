@@ -135,7 +135,7 @@ pub(crate) fn equivalence(of: &Comparison) -> Piece {
         ..Series::default()
     };
     let figure = kelir_plot::Figure {
-        title: format!("{}: p by bound", of.title),
+        title: format!("{}: p by bound", of.id),
         x: Axis::linear("bound on the share, ±").within(0.0, 0.5),
         y: Axis::linear("p").within(0.0, 1.0),
         series: vec![
