@@ -1,6 +1,7 @@
 //! Logistic regression with random intercepts for participants and for pairs, which cross, by Laplace's approximation.
 
 use super::logit::{Coefficient, coefficient, logistic, softplus};
+use super::pairs_of;
 use crate::linalg;
 use crate::normal;
 use crate::optimise::{Local, Maximum, maximise};
@@ -165,15 +166,7 @@ struct Arrow {
 
 impl Data {
     fn new(choices: &[Vec<Option<bool>>]) -> Result<Data> {
-        let columns = choices.first().map_or(0, Vec::len);
-        if let Some(row) = choices.iter().find(|row| row.len() != columns) {
-            return Err(StatsError::LengthMismatch {
-                first: "choices[0]",
-                first_len: columns,
-                second: "another participant's choices",
-                second_len: row.len(),
-            });
-        }
+        let columns = pairs_of(choices)?;
         let answered: Vec<&Vec<Option<bool>>> =
             choices.iter().filter(|row| row.iter().any(Option::is_some)).collect();
         let used: Vec<usize> =

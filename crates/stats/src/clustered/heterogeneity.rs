@@ -1,5 +1,6 @@
 //! Do pairs differ, whatever the choices of one participant have in common?
 
+use super::pairs_of;
 use crate::linalg;
 use crate::normal;
 use crate::random::Random;
@@ -45,15 +46,7 @@ pub fn heterogeneity(choices: &[Vec<Option<bool>>], deals: usize, seed: u64) -> 
         let rule = "must be at least 1000";
         return Err(StatsError::Invalid { name: "deals", value: deals as f64, rule });
     }
-    let columns = choices.first().map_or(0, Vec::len);
-    if let Some(row) = choices.iter().find(|row| row.len() != columns) {
-        return Err(StatsError::LengthMismatch {
-            first: "choices[0]",
-            first_len: columns,
-            second: "another participant's choices",
-            second_len: row.len(),
-        });
-    }
+    let columns = pairs_of(choices)?;
     let hands: Vec<Hand> = choices.iter().filter_map(|row| Hand::of(row)).collect();
     let test = Quadratic::of(&hands, columns)?;
     let mut seen = vec![0; columns];
@@ -203,15 +196,7 @@ fn deal(hands: &[Hand], columns: usize, random: &mut Random) -> Vec<u32> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test that fails here says where")]
     use super::*;
-
-    fn rows(text: &str) -> Vec<Vec<Option<bool>>> {
-        let choice = |c| match c {
-            '1' => Some(true),
-            '0' => Some(false),
-            _ => None,
-        };
-        text.split(' ').map(|row| row.chars().map(choice).collect()).collect()
-    }
+    use crate::clustered::tests::rows;
 
     /// R 4.2.2: `mantelhaen.test(table(pair, choice, participant))`, which is Cochran's Q where nobody left a pair out.
     #[test]

@@ -55,6 +55,20 @@ impl Cluster {
     }
 }
 
+/// How many pairs rows of choices, one a participant, are of. Errors: rows of unequal length.
+fn pairs_of(choices: &[Vec<Option<bool>>]) -> Result<usize> {
+    let pairs = choices.first().map_or(0, Vec::len);
+    match choices.iter().find(|row| row.len() != pairs) {
+        None => Ok(pairs),
+        Some(row) => Err(StatsError::LengthMismatch {
+            first: "choices[0]",
+            first_len: pairs,
+            second: "another participant's choices",
+            second_len: row.len(),
+        }),
+    }
+}
+
 /// The clusters that have trials, checked.
 fn answered(clusters: &[Cluster]) -> Result<Vec<Cluster>> {
     for (index, cluster) in clusters.iter().enumerate() {

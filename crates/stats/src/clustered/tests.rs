@@ -6,6 +6,16 @@ use crate::random::Random;
 use proptest::prelude::*;
 use serde_json::Value;
 
+/// A row a participant: 1 the target, 0 the other, - not answered.
+pub(super) fn rows(text: &str) -> Vec<Vec<Option<bool>>> {
+    let choice = |c| match c {
+        '1' => Some(true),
+        '0' => Some(false),
+        _ => None,
+    };
+    text.split(' ').map(|row| row.chars().map(choice).collect()).collect()
+}
+
 fn oracle() -> Value {
     serde_json::from_str(include_str!("../../tests/data/clustered.json")).unwrap()
 }

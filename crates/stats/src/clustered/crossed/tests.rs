@@ -3,17 +3,8 @@
 //! by `vcov`, from finite differences.
 
 use super::*;
+use crate::clustered::tests::rows;
 use crate::random::Random;
-
-/// A row a participant: 1 the target, 0 the other, - not answered.
-fn rows(text: &str) -> Vec<Vec<Option<bool>>> {
-    let choice = |c| match c {
-        '1' => Some(true),
-        '0' => Some(false),
-        _ => None,
-    };
-    text.split(' ').map(|row| row.chars().map(choice).collect()).collect()
-}
 
 const K1: &str = "000101 100101 011101 110101 011110 000100 001100 110100 110101 111100 111101 010100 111111 001100 010101 111101 011111 010101";
 const K2: &str = "101001 001111 001000 011001 001011 101101 111011 001000 101001 001110 111111 111111 001000 111111 011101 101101 001100 101110";
