@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. dcf595fc86403b2e69753f63b812bb7be6953c139e73fbae91c1ce2819a28cd6 0a08f24b9106a458f0593386d5bfedadfad38013031ebb3f373eec247db0e9f6
+// Generated from openapi.json by `npm run types`; do not edit. 05b34929478c937f13c8dc9f077bc4a83e360bbc6fc0369afb2052c881761dd0 0a08f24b9106a458f0593386d5bfedadfad38013031ebb3f373eec247db0e9f6
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {

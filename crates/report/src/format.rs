@@ -87,7 +87,8 @@ pub(crate) fn percent(share: f64) -> String {
 
 /// A number from 0 to `most` with so many decimals, and with more where it would else be read as one of the two.
 pub(crate) fn below(x: f64, most: f64, decimals: usize) -> String {
-    let is_end = |x: f64| x <= 0.0 || x >= most;
+    // What differs from an end by rounding alone is one.
+    let is_end = |x: f64| x <= 1e-12 * most || x >= most * (1.0 - 1e-12);
     let told = |decimals: &usize| is_end(x) || !is_end(fixed(x, *decimals).parse().unwrap_or_default());
     fixed(x, (decimals..MOST_DECIMALS).find(told).unwrap_or(MOST_DECIMALS))
 }
@@ -144,6 +145,7 @@ mod tests {
             (percent(1.0), "100%"),
             (percent(0.0), "0%"),
             (percent(249.0 / 250.0), "99.6%"),
+            (below(0.1 + 0.2 + 0.7 - 4e-16, 1.0, 3), "1.000"),
             (percent(9_999.0 / 10_000.0), "99.99%"),
             (percent(0.004), "0.4%"),
             (percent(0.995), "99.5%"),

@@ -113,7 +113,7 @@ fn of_block(block: &BlockOrder, target: &str) -> Vec<String> {
             .map(|slope| changed(&format!("From the first trial to the last, the share of {target}"), slope)),
     );
     lines.extend(block.speed.as_ref().map(|slope| {
-        let what = format!("As response time doubles within a participant, the share of {target}");
+        let what = format!("As response time grows by a tenth within a participant, the share of {target}");
         changed(&what, slope)
     }));
     lines.extend(block.outliers.map(|o| {

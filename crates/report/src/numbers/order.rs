@@ -29,7 +29,7 @@ pub(crate) fn of_block_order(found: &BlockOrder) -> Vec<Number> {
     let mut all = Vec::new();
     let name = "choice of the target, from the first trial to the last (proportion)";
     all.extend(found.place.as_ref().map(|slope| of_slope(rows, name, slope)));
-    let name = "choice of the target, as response time doubles (proportion)";
+    let name = "choice of the target, as response time grows by a tenth (proportion)";
     all.extend(found.speed.as_ref().map(|slope| of_slope(rows, name, slope)));
     if let Some(outliers) = found.outliers {
         let rows = rows.named("response time outliers");

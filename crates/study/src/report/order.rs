@@ -68,7 +68,7 @@ pub struct BlockOrder {
     pub id: String,
     /// Slope of choosing the target (0 or 1) from the block's first trial to its last. Null where nothing tells.
     pub place: Option<WithinSlope>,
-    /// Slope of choosing the target over the logarithm of the response time, per doubling. Null likewise.
+    /// Slope of choosing the target over the logarithm of the response time, for each tenth that it grows. Null likewise.
     pub speed: Option<WithinSlope>,
     /// Response times that are outliers; null with fewer than four.
     pub outliers: Option<Outliers>,
@@ -170,7 +170,7 @@ fn of_block(block: &Block, seen: &[&[Given]], seed: u64) -> BlockOrder {
     let speeds: Vec<Groups> = match block.psychometric {
         None => {
             let own = |answers: &&[Given]| {
-                vec![answers.iter().filter(timed).map(|g| (g.rt_ms.log2(), target(g))).collect()]
+                vec![answers.iter().filter(timed).map(|g| (g.rt_ms.ln() / 1.1f64.ln(), target(g))).collect()]
             };
             seen.iter().map(own).collect()
         }
