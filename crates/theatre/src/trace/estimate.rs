@@ -70,39 +70,28 @@ pub(crate) struct Row {
     pub error_max: f64,
 }
 
+/// Deviations of the replicates, channel by channel.
+type Deviations = [[f64; REPLICATES]; 3];
+
 /// The estimate of one emitter's visibility through some planes: V₀ and the replicates' deviations from it, both in E / L.
 #[derive(Clone, Copy)]
 struct Estimate {
     base: [f64; 3],
-    /// `None` where the bounds say that all deviations are zero.
-    deviation: Option<[[f64; REPLICATES]; 3]>,
+    /// Mean over the replicates.
+    mean: [f64; 3],
+    /// Which of the pixel's deviations; `None` where the bounds say that all are zero.
+    deviation: Option<usize>,
 }
 
-/// Sums over sources of L · E in one channel, through one set of planes: of the replicates, and of their means.
-#[derive(Clone, Copy, Default)]
-struct Light {
-    replicates: [f64; REPLICATES],
-    mean: f64,
-}
-
-impl Estimate {
-    /// Mean of the replicates.
-    fn mean(&self, c: usize) -> f64 {
-        self.base[c] + self.deviation.as_ref().map_or(0.0, |d| d[c].iter().sum::<f64>() / REPLICATES as f64)
-    }
-
-    /// Adds `radiance` times this to `light`.
-    fn add_to(&self, light: &mut Light, c: usize, radiance: f64) {
-        light.mean += radiance * self.mean(c);
-        match &self.deviation {
-            None => light.replicates.iter_mut().for_each(|l| *l += radiance * self.base[c]),
-            Some(d) => light
-                .replicates
-                .iter_mut()
-                .zip(&d[c])
-                .for_each(|(l, deviation)| *l += radiance * (self.base[c] + deviation)),
-        }
-    }
+/// One pixel's estimates and their sums, whose memory serves all pixels of a row.
+#[derive(Default)]
+struct Pixel {
+    estimates: Vec<Estimate>,
+    deviations: Vec<Deviations>,
+    /// Σ L · E in one channel, one a set of planes.
+    means: Vec<f64>,
+    /// The same of every replicate.
+    replicates: Vec<[f64; REPLICATES]>,
 }
 
 impl Estimator<'_> {
@@ -181,54 +170,78 @@ impl Estimator<'_> {
         let extra = if self.layers { 3 + emitters * self.plan.channels } else { 0 };
         let mut row = Row { values: vec![0.0; width * (3 + extra)], ..Row::default() };
         let subsets = 1 + if alone(self.theatre) { self.masks.len() } else { 0 };
-        let (mut estimates, mut lights) =
-            (Vec::with_capacity(emitters * subsets), Vec::with_capacity(subsets));
+        let like = self.like();
+        let mut pixel = Pixel::default();
         for i in 0..width {
-            estimates.clear();
+            pixel.estimates.clear();
+            pixel.deviations.clear();
             let mut penumbra = false;
             for subset in 0..subsets {
                 let planes = if subset == 0 { 0..self.masks.len() } else { subset - 1..subset };
                 for k in 0..emitters {
-                    let (estimate, varies) = self.estimate(k, [i, j], planes.clone(), source);
-                    row.jobs += u64::from(estimate.deviation.is_some());
-                    estimates.push(estimate);
-                    penumbra |= varies;
+                    penumbra |= self.estimate(k, [i, j], planes.clone(), source, &mut pixel);
                 }
             }
-            self.finish([i, j], &estimates, penumbra, &mut lights, &mut row);
+            row.jobs += pixel.deviations.len() as u64;
+            self.finish([i, j], like, &mut pixel, penumbra, &mut row);
         }
         row
     }
 
-    /// The estimate and whether the bounds leave room for a penumbra.
+    /// Adds an estimate to `pixel`, and says whether the bounds leave room for a penumbra.
     fn estimate(
         &self,
         k: usize,
         [i, j]: [usize; 2],
         planes: std::ops::Range<usize>,
         source: Source,
-    ) -> (Estimate, bool) {
+        pixel: &mut Pixel,
+    ) -> bool {
         // What doesn't shine makes no penumbra, and its visibility is of no use but as a layer.
         let dark = self.radiance[k] == [0.0; 3];
         if dark && self.skip && !self.layers {
-            return (Estimate { base: [0.0; 3], deviation: None }, false);
+            pixel.estimates.push(Estimate { base: [0.0; 3], mean: [0.0; 3], deviation: None });
+            return false;
         }
         let known = self.known(k, i, j, planes.clone());
         let [v0_r, v0_g, v0_b] = known.unwrap_or([0.0; 3]);
-        // Rounded as the samples' products are, so that what is clear is exactly 1.
-        let full =
-            f64::from(self.masks[planes.clone()].iter().map(|m| m.max_code as f32 * m.unit).product::<f32>());
+        let full = self.full(planes.clone());
         let lit = self.lit(k, j * self.plan.size[0] + i);
         let base = [v0_r, v0_g, v0_b].map(|v| lit * (f64::from(v) / full));
         if known.is_some() && self.skip {
-            return (Estimate { base, deviation: None }, false);
+            pixel.estimates.push(Estimate { base, mean: base, deviation: None });
+            return false;
         }
         let (x, y, first, end) = (i as u32, j as u32, planes.start as u32, planes.end as u32);
         let sums = source(&Job { x, y, emitter: k as u32, first, end, v0_r, v0_g, v0_b });
         let over_mean = self.means.get(k).map_or(1.0, |means| lit / means[j * self.plan.size[0] + i]);
         let unit = if self.plan.geometric { lit } else { self.plan.emitters[k].scale * over_mean };
         let scale = unit / (self.points.samples as f64 * full);
-        (Estimate { base, deviation: Some(sums.map(|d| d.map(|s| s * scale))) }, known.is_none() && !dark)
+        let deviations = sums.map(|d| d.map(|s| s * scale));
+        let mean_of = |c: usize| base[c] + deviations[c].iter().sum::<f64>() / REPLICATES as f64;
+        let mean = if self.plan.channels == 1 { [mean_of(0); 3] } else { [0, 1, 2].map(mean_of) };
+        pixel.estimates.push(Estimate { base, mean, deviation: Some(pixel.deviations.len()) });
+        pixel.deviations.push(deviations);
+        known.is_none() && !dark
+    }
+
+    /// The product of the largest codes, rounded as the samples' products are, so that what is clear is exactly 1.
+    fn full(&self, planes: std::ops::Range<usize>) -> f64 {
+        f64::from(self.masks[planes].iter().map(|m| m.max_code as f32 * m.unit).product::<f32>())
+    }
+
+    /// The first channel of the same light as each: what is grey is worked out once.
+    fn like(&self) -> [usize; 3] {
+        let ambient = |c: usize| match self.theatre.ambient {
+            Ambient::Paper { s, .. } => s[c],
+            _ => 0.0,
+        };
+        let same = |a: usize, b: usize| {
+            self.plan.channels == 1
+                && ambient(a) == ambient(b)
+                && self.radiance.iter().all(|radiance| radiance[a] == radiance[b])
+        };
+        [0, 1, 2].map(|c| (0..c).find(|&b| same(b, c)).unwrap_or(c))
     }
 
     /// The product of codes, each in its mask's unit, where the bounds say that it is one value: all planes constant, or one of them opaque.
@@ -253,38 +266,50 @@ impl Estimator<'_> {
     fn finish(
         &self,
         [i, j]: [usize; 2],
-        estimates: &[Estimate],
+        like: [usize; 3],
+        Pixel { estimates, deviations, means, replicates }: &mut Pixel,
         penumbra: bool,
-        lights: &mut Vec<Light>,
         row: &mut Row,
     ) {
         let width = self.plan.size[0];
         let pixel = j * width + i;
         let sources = &self.radiance;
-        let sampled = estimates.iter().any(|e| e.deviation.is_some());
+        let sampled = !deviations.is_empty();
         let mut error = 0f64;
+        // Irradiance without planes, with them, and its standard error, channel by channel.
+        let mut light = [[0f64; 3]; 3];
         for c in 0..3 {
+            if like[c] == c {
+                let lit: f64 = sources.iter().enumerate().map(|(k, l)| l[c] * self.lit(k, pixel)).sum();
+                let through = |estimates: &[Estimate]| {
+                    estimates.iter().zip(sources).fold(0.0, |sum, (e, l)| sum + l[c] * e.mean[c])
+                };
+                means.clear();
+                means.extend(estimates.chunks_exact(sources.len()).map(through));
+                let seen = self.irradiance(c, lit, |subset| means[subset]);
+                let mut se = 0.0;
+                if sampled {
+                    replicates.clear();
+                    replicates.extend(estimates.chunks_exact(sources.len()).map(|estimates| {
+                        let mut sum = [0.0; REPLICATES];
+                        for (e, l) in estimates.iter().zip(sources) {
+                            add(&mut sum, l[c], e.base[c], e.deviation.map(|d| &deviations[d][c]));
+                        }
+                        sum
+                    }));
+                    se = standard_error(&std::array::from_fn(|r| {
+                        self.irradiance(c, lit, |subset| replicates[subset][r])
+                    }));
+                }
+                light[c] = [lit, seen, se];
+            }
+            let [lit, seen, se] = light[like[c]];
             let reflect = f64::from(self.albedo.at(c, pixel)) / std::f64::consts::PI;
-            let lit: f64 = sources.iter().enumerate().map(|(k, l)| l[c] * self.lit(k, pixel)).sum();
-            lights.clear();
-            lights.extend(estimates.chunks_exact(sources.len()).map(|estimates| {
-                let mut light = Light::default();
-                estimates.iter().zip(sources).for_each(|(e, l)| e.add_to(&mut light, c, l[c]));
-                light
-            }));
-            let radiance = reflect * self.irradiance(c, lit, |subset| lights[subset].mean);
-            row.values[c * width + i] = radiance as f32;
+            row.values[c * width + i] = (reflect * seen) as f32;
             row.brightest = row.brightest.max(reflect * lit);
-            if sampled {
-                let mut replicates = [0.0; REPLICATES];
-                for (r, replicate) in replicates.iter_mut().enumerate() {
-                    *replicate = self.irradiance(c, lit, |subset| lights[subset].replicates[r]);
-                }
-                let se = reflect * standard_error(&replicates);
-                error = error.max(se);
-                if self.layers {
-                    row.values[(3 + c) * width + i] = se as f32;
-                }
+            error = error.max(reflect * se);
+            if sampled && self.layers {
+                row.values[(3 + c) * width + i] = (reflect * se) as f32;
             }
         }
         if penumbra {
@@ -297,7 +322,7 @@ impl Estimator<'_> {
             let channels = self.plan.channels;
             for (k, estimate) in estimates[..sources.len()].iter().enumerate() {
                 for c in 0..channels {
-                    let visibility = estimate.mean(c) / self.lit(k, pixel);
+                    let visibility = estimate.mean[c] / self.lit(k, pixel);
                     row.values[(6 + k * channels + c) * width + i] = visibility as f32;
                 }
             }
@@ -331,6 +356,16 @@ impl Estimator<'_> {
 /// Whether each plane's own visibility is asked for, too: with several planes the paper's ambient light needs it.
 pub(super) fn alone(theatre: &Theatre) -> bool {
     matches!(theatre.ambient, Ambient::Paper { .. }) && theatre.planes.len() > 1
+}
+
+/// Adds `radiance` times base and deviation to every replicate.
+fn add(sum: &mut [f64; REPLICATES], radiance: f64, base: f64, deviation: Option<&[f64; REPLICATES]>) {
+    match deviation {
+        None => sum.iter_mut().for_each(|sum| *sum += radiance * base),
+        Some(deviation) => {
+            sum.iter_mut().zip(deviation).for_each(|(sum, deviation)| *sum += radiance * (base + deviation));
+        }
+    }
 }
 
 /// Standard error of the mean of independent replicates; exactly 0 where all are equal.
