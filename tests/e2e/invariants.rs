@@ -8,8 +8,9 @@ use std::process::Command;
 use serde_json::Value;
 
 /// Crates that stay pure: no async runtime, database, web server or GPU anywhere below them.
-const PURE: [&str; 7] = [
+const PURE: [&str; 8] = [
     "kelir-reader",
+    "kelir-mesh",
     "kelir-scene",
     "kelir-stats",
     "kelir-study",
