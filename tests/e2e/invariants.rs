@@ -22,12 +22,13 @@ const IMPURE: [&str; 5] = ["tokio", "sqlx", "rusqlite", "axum", "wgpu"];
 /// What answers requests, and judges passwords for it: the house knows no HTTP.
 const HTTP: [&str; 6] = ["axum", "hyper", "tower", "tower-http", "argon2", "kelir-server"];
 /// What some rooms alone may name, beside tests.
-const OWNED: [(&str, &[&str]); 10] = [
+const OWNED: [(&str, &[&str]); 11] = [
     ("wgpu", &["kelir-frame", "kelir-theatre"]),
     ("sqlx", &["kelir-store"]),
     ("rusqlite", &["kelir-store"]),
     ("axum", &["kelir-server"]),
-    ("kelir-frame", &["kelir-theatre", "kelir-render"]),
+    ("kelir-frame", &["kelir-theatre", "kelir-stage", "kelir-render"]),
+    ("kelir-stage", &["kelir-render"]),
     ("kelir-theatre", &["kelir-render"]),
     ("kelir-render", &["kelir-house", "kelir"]),
     ("kelir-house", &["kelir-server", "kelir"]),

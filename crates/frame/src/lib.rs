@@ -15,6 +15,7 @@ mod frame;
 #[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 pub mod gpu;
 pub mod simd;
+pub mod sobol;
 
 pub use backend::Backend;
 pub use error::RenderError;

@@ -16,6 +16,7 @@ mod puppet;
 #[cfg(test)]
 mod reference;
 mod scene;
+pub mod stage;
 mod staging;
 mod subject;
 pub mod theatre;

@@ -82,6 +82,22 @@ impl LinearImage {
     pub fn channel(&self, c: usize) -> &[f32] {
         &self.planes[c.min(self.planes.len() - 1)]
     }
+
+    /// Channel `c` at (u, v), from (0, 0) at the top left to (1, 1), interpolated between the middles of pixels; beyond them its edge goes on.
+    pub fn at(&self, c: usize, u: f64, v: f64) -> f64 {
+        let axis = |x: f64, n: usize| {
+            let x = (x * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
+            let low = (x as usize).min(n - 1);
+            (low, (low + 1).min(n - 1), x - low as f64)
+        };
+        let ((x0, x1, fx), (y0, y1, fy)) = (axis(u, self.width), axis(v, self.height));
+        let values = self.channel(c);
+        let row = |y: usize| {
+            let [a, b] = [x0, x1].map(|x| f64::from(values[y * self.width + x]));
+            a * (1.0 - fx) + b * fx
+        };
+        row(y0) * (1.0 - fy) + row(y1) * fy
+    }
 }
 
 /// The bulb.

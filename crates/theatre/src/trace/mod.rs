@@ -20,7 +20,7 @@ pub(crate) mod gpu;
 mod native;
 mod plan;
 pub(crate) mod scenes;
-pub(crate) mod sobol;
+pub(crate) use kelir_frame::sobol;
 mod tables;
 mod tilted;
 

@@ -5,13 +5,13 @@
 //! fast convergence and every point stays uniform; estimates of different pixels and emitters are uncorrelated.
 
 /// Independent scrambles: their means' spread is the standard error.
-pub(crate) const REPLICATES: usize = 16;
+pub const REPLICATES: usize = 16;
 
 /// Dimensions: emitter x, emitter y, pixel x, pixel y.
-pub(crate) const DIMENSIONS: usize = 4;
+pub const DIMENSIONS: usize = 4;
 
 /// `samples` points per replicate.
-pub(crate) struct Points {
+pub struct Points {
     /// What they were made from.
     pub seed: u64,
     /// Points per replicate.
@@ -24,7 +24,7 @@ pub(crate) struct Points {
 
 impl Points {
     /// The table for `seed`; longer tables of one seed begin with the shorter ones.
-    pub(crate) fn new(seed: u64, samples: usize) -> Self {
+    pub fn new(seed: u64, samples: usize) -> Self {
         let key = fold(seed);
         let dims = std::array::from_fn(|d| {
             let directions = directions(d);
@@ -40,21 +40,21 @@ impl Points {
         Self { seed, samples, scrambled: true, dims }
     }
 
-    /// Coordinate `d` in [−½, ½) of a replicate's point, shifted by the words of stream `key`: 24 bits, as [`super::native`] takes.
-    pub(crate) fn at(&self, key: u32, d: usize, point: usize, replicate: usize) -> f64 {
+    /// Coordinate `d` in [−½, ½) of a replicate's point, shifted by the words of stream `key`: 24 bits.
+    pub fn at(&self, key: u32, d: usize, point: usize, replicate: usize) -> f64 {
         let shift = if self.scrambled { shift(key, d, replicate) } else { 0 };
         f64::from((self.dims[d][point * REPLICATES + replicate] ^ shift) as i32 >> 8) / 16_777_216.0
     }
 }
 
 /// A 64-bit seed as one word.
-pub(crate) fn fold(seed: u64) -> u32 {
+pub fn fold(seed: u64) -> u32 {
     hash(seed as u32 ^ hash((seed >> 32) as u32))
 }
 
 /// A 32-bit mixing permutation ("lowbias32", C. Wellons, 2018: bias 0.17 bits of avalanche).
 #[inline(always)]
-pub(crate) fn hash(mut x: u32) -> u32 {
+pub fn hash(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);
     x ^= x >> 15;
@@ -64,13 +64,13 @@ pub(crate) fn hash(mut x: u32) -> u32 {
 
 /// The digital shift of a pixel's stream: `key` is [`stream`] of the seed, the pixel and the emitter.
 #[inline(always)]
-pub(crate) fn shift(key: u32, dimension: usize, replicate: usize) -> u32 {
+pub fn shift(key: u32, dimension: usize, replicate: usize) -> u32 {
     hash(key.wrapping_add(((dimension * REPLICATES + replicate) as u32).wrapping_mul(0x9e37_79b9)))
 }
 
 /// The key of one pixel's and one emitter's random words; `seed` is already [`fold`]ed.
 #[inline(always)]
-pub(crate) fn stream(seed: u32, pixel: u32, emitter: u32) -> u32 {
+pub fn stream(seed: u32, pixel: u32, emitter: u32) -> u32 {
     hash(hash(seed ^ hash(pixel)).wrapping_add(emitter))
 }
 

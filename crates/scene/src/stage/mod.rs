@@ -1,0 +1,66 @@
+//! The stage at one instant, ready to draw: meshes and simple shapes, lights, a slide projector and a camera.
+//!
+//! Metres; right-handed, y up; a camera looks along its own −z. Counter-clockwise is outside.
+
+mod camera;
+mod light;
+mod object;
+mod slide;
+
+pub use camera::{Camera, Projection};
+pub use light::{AreaShape, Environment, Light, LightKind, Projector};
+pub use object::{Form, MeshForm, Object, Surface};
+pub use slide::{Pattern, Slide};
+
+use crate::theatre::Exposure;
+
+/// All that a camera can see at one instant.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// Who looks.
+    pub camera: Camera,
+    /// What is there, in the file's order.
+    pub objects: Vec<Object>,
+    /// What shines, in the file's order.
+    pub lights: Vec<Light>,
+    /// Light that is the same everywhere and casts no shadow: a surface sends out albedo × this radiance, one a channel.
+    pub ambient: [f64; 3],
+    /// What the display shows as white.
+    pub exposure: Exposure,
+}
+
+/// Where something is and how it is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Where its origin is, metres.
+    pub position_m: glam::DVec3,
+    /// How it is turned: a unit quaternion.
+    pub rotation: glam::DQuat,
+    /// By how much it is enlarged, the same in all directions; > 0.
+    pub scale: f64,
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self { position_m: glam::DVec3::ZERO, rotation: glam::DQuat::IDENTITY, scale: 1.0 }
+    }
+}
+
+impl Pose {
+    /// From its own coordinates to the stage's.
+    pub fn to_stage(&self) -> glam::DAffine3 {
+        glam::DAffine3::from_scale_rotation_translation(
+            glam::DVec3::splat(self.scale),
+            self.rotation,
+            self.position_m,
+        )
+    }
+
+    /// The pose of what stands at a point and looks (along its −z) at another, with `up` as far upwards as can be.
+    pub fn looking(from_m: glam::DVec3, at_m: glam::DVec3, up: glam::DVec3) -> Self {
+        let back = (from_m - at_m).normalize();
+        let right = up.cross(back).try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
+        let turned = glam::DMat3::from_cols(right, back.cross(right), back);
+        Self { position_m: from_m, rotation: glam::DQuat::from_mat3(&turned), scale: 1.0 }
+    }
+}
