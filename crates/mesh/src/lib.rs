@@ -2,8 +2,16 @@
 //!
 //! Lengths are metres, right-handed, y up; counter-clockwise is outside. It does no IO: files come in as bytes.
 
+mod fault;
 mod mesh;
+mod model;
+mod read;
 #[cfg(test)]
 mod shapes;
+mod write;
 
+pub use fault::Fault;
 pub use mesh::{Bounds, Mesh};
+pub use model::{Animation, Channel, Model, Node, Part, Skin, Transform, Values};
+pub use read::{Format, LIMIT, Unit, read};
+pub use write::write_glb;
