@@ -2,16 +2,21 @@
 //!
 //! Lengths are metres, right-handed, y up; counter-clockwise is outside. It does no IO: files come in as bytes.
 
+mod check;
 mod fault;
 mod mesh;
 mod model;
 mod read;
+mod repair;
 #[cfg(test)]
 mod shapes;
+mod topology;
 mod write;
 
+pub use check::{Report, check};
 pub use fault::Fault;
 pub use mesh::{Bounds, Mesh};
 pub use model::{Animation, Channel, Model, Node, Part, Skin, Transform, Values};
 pub use read::{Format, LIMIT, Unit, read};
+pub use repair::{Repaired, repair};
 pub use write::write_glb;

@@ -407,7 +407,7 @@ mod tests {
             swapped("3 0 2 1", "3e9 0 2 1"),
             "face 1 = 3000000000: a list is no longer than the 14 bytes left"
         );
-        assert_eq!(swapped("7\n", ""), "element edge = 1: the file has 0 bytes left for as many");
+        assert_eq!(swapped("7\n", ""), "edge 0: the file ends before it");
         let strips =
             "ply\nformat ascii 1.0\nelement tristrips 0\nproperty list int int vertex_indices\nend_header\n";
         assert!(read(strips.as_bytes()).unwrap_err().to_string().contains("tristrips"));

@@ -1,6 +1,6 @@
 //! Files that were damaged, by chance: they are read or refused, and nothing else.
 
-use kelir_mesh::{Fault, Format, Mesh, Model, Unit, read, write_glb};
+use kelir_mesh::{Fault, Format, Mesh, Model, Unit, check, read, repair, write_glb};
 use proptest::prelude::*;
 
 /// A small surface with all that a vertex may have.
@@ -174,6 +174,11 @@ proptest! {
                 // All that is computed of it has an answer.
                 let _ = (mesh.area(), mesh.bounds(), mesh.signed_volume(), mesh.hash());
                 prop_assert_eq!(mesh.smooth_normals().len(), mesh.positions.len());
+                let _ = check(&mesh);
+                let mut repaired = mesh;
+                repair(&mut repaired);
+                let report = check(&repaired);
+                prop_assert_eq!([report.out_of_range, report.zero_area, report.duplicates, report.unused_vertices], [0; 4]);
             }
         }
     }
