@@ -1,11 +1,9 @@
 //! What is wrong with a mesh, counted.
 
-use std::collections::HashSet;
-
 use serde::Serialize;
 
 use crate::Mesh;
-use crate::topology::{Sets, Topology, is_drawable, is_flat};
+use crate::topology::{Sets, Side, Topology, is_drawable, is_flat};
 
 /// What a mesh is like. Vertices at one position are one for all that is said of edges, fans and parts: files split them where a texture or
 /// a normal has a seam, and the surface has none there.
@@ -113,15 +111,19 @@ pub fn check(mesh: &Mesh) -> Report {
     report
 }
 
-/// Faces with the places of an earlier one.
+/// Faces with the places of an earlier one: they have its edge of the two lowest places, and its third.
 fn duplicates(topology: &Topology) -> usize {
-    let mut seen = HashSet::with_capacity(topology.corners.len());
-    let sorted = topology.corners.iter().map(|corners| {
-        let mut corners = *corners;
-        corners.sort_unstable();
-        corners
-    });
-    sorted.filter(|corners| !seen.insert(*corners)).count()
+    let mut thirds = Vec::new();
+    let mut count = 0;
+    for edge in topology.edges().filter(|edge| edge.len() > 1) {
+        let [_, high] = edge[0].ends;
+        let third = |side: &Side| topology.corners[side.face as usize].into_iter().max();
+        thirds.clear();
+        thirds.extend(edge.iter().filter_map(third).filter(|third| *third > high));
+        thirds.sort_unstable();
+        count += thirds.windows(2).filter(|pair| pair[0] == pair[1]).count();
+    }
+    count
 }
 
 fn edges(topology: &Topology, report: &mut Report) {

@@ -76,7 +76,7 @@ pub fn repair(mesh: &mut Mesh) -> Repaired {
 }
 
 /// Joins vertices of one position and texture coordinates; answers how many of them no triangle has any longer.
-fn weld(mesh: &mut Mesh) -> usize {
+pub(crate) fn weld(mesh: &mut Mesh) -> usize {
     let place = welded(&mesh.positions);
     let mut first = HashMap::new();
     let mut joined = 0;
@@ -93,7 +93,7 @@ fn weld(mesh: &mut Mesh) -> usize {
 }
 
 /// Drops vertices that no triangle has; answers how many.
-fn drop_unused(mesh: &mut Mesh) -> usize {
+pub(crate) fn drop_unused(mesh: &mut Mesh) -> usize {
     let mut used = vec![false; mesh.positions.len()];
     mesh.triangles.as_flattened().iter().for_each(|index| used[*index as usize] = true);
     let mut to = vec![0; used.len()];

@@ -40,15 +40,7 @@ impl Topology {
                 corners.push([a, b, c]);
             }
         }
-        let side = |face: usize, from: u32, to: u32| Side {
-            ends: [from.min(to), from.max(to)],
-            face: face as u32,
-            upwards: from < to,
-        };
-        let sides = corners.iter().enumerate();
-        let sides = sides.flat_map(|(f, &[a, b, c])| [side(f, a, b), side(f, b, c), side(f, c, a)]);
-        let mut sides: Vec<Side> = sides.collect();
-        sides.sort_unstable();
+        let sides = by_edge(&corners, mesh.positions.len());
         Topology { place, faces, corners, sides }
     }
 
@@ -56,6 +48,30 @@ impl Topology {
     pub(crate) fn edges(&self) -> impl Iterator<Item = &[Side]> {
         self.sides.chunk_by(|a, b| a.ends == b.ends)
     }
+}
+
+/// The sides of all faces, sorted: put into a row for each lower end, which are then short.
+fn by_edge(corners: &[[u32; 3]], places: usize) -> Vec<Side> {
+    let side = |face: usize, from: u32, to: u32| Side {
+        ends: [from.min(to), from.max(to)],
+        face: face as u32,
+        upwards: from < to,
+    };
+    let all = || {
+        let faces = corners.iter().enumerate();
+        faces.flat_map(|(f, &[a, b, c])| [side(f, a, b), side(f, b, c), side(f, c, a)])
+    };
+    let mut next = vec![0; places + 1];
+    all().for_each(|side| next[side.ends[0] as usize + 1] += 1);
+    (0..places).for_each(|place| next[place + 1] += next[place]);
+    let mut sides = vec![side(0, 0, 0); 3 * corners.len()];
+    for side in all() {
+        let at = &mut next[side.ends[0] as usize];
+        sides[*at] = side;
+        *at += 1;
+    }
+    sides.chunk_by_mut(|a, b| a.ends[0] == b.ends[0]).for_each(<[Side]>::sort_unstable);
+    sides
 }
 
 /// Whether all three indices are in range and their positions finite.
