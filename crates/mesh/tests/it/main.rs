@@ -1,0 +1,3 @@
+//! What the crate promises of whole files.
+
+mod hostile;
