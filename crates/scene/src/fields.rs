@@ -37,7 +37,7 @@ fn behind(node: &Node) -> Option<f64> {
     node.number_in(..=-LENGTH_M, "the lamp is backstage, behind the screen (z < 0)")
 }
 
-fn radiance(node: &Node) -> Option<[f64; 3]> {
+pub(crate) fn radiance(node: &Node) -> Option<[f64; 3]> {
     node.rgb(|x| x.number_in(0.0..=RADIANCE, "a radiance is from 0 to 1e15"))
 }
 
@@ -57,7 +57,7 @@ pub(crate) fn screen(node: &Node, name: &str, loader: &Loader) -> Option<Screen>
     Some(Screen { width_m: width_m?, height_m: height_m?, albedo: albedo? })
 }
 
-fn uniform(node: &Node) -> Option<[f64; 3]> {
+pub(crate) fn uniform(node: &Node) -> Option<[f64; 3]> {
     node.rgb(|x| x.number_in(0.0..=1.0, "an albedo is between 0 and 1"))
 }
 
@@ -86,7 +86,7 @@ fn cloth(
 }
 
 /// An opaque image, linearised as it says.
-fn albedo_image(node: &Node, name: &str, loader: &Loader) -> Option<LinearImage> {
+pub(crate) fn albedo_image(node: &Node, name: &str, loader: &Loader) -> Option<LinearImage> {
     let (_, bytes) = loader.read(name, node, limits::IMAGE_BYTES)?;
     let picture = match Picture::decode(&bytes) {
         Ok(picture) => picture,
@@ -119,6 +119,36 @@ fn albedo_image(node: &Node, name: &str, loader: &Loader) -> Option<LinearImage>
         image.pixels().map(|p| [p.0[0], p.0[1], p.0[2]].map(|c| linear[c as usize])).collect()
     };
     Some(LinearImage::new(width, height, &rgb))
+}
+
+/// A picture of light: linear values, EXR or Radiance HDR.
+pub(crate) fn picture_light(node: &Node, name: &str, loader: &Loader) -> Option<LinearImage> {
+    let (path, bytes) = loader.read(name, node, limits::IMAGE_BYTES)?;
+    let decoded = image::ImageReader::new(std::io::Cursor::new(&bytes[..])).with_guessed_format();
+    let reader = match decoded {
+        Ok(reader)
+            if matches!(
+                reader.format(),
+                Some(image::ImageFormat::OpenExr | image::ImageFormat::Hdr)
+            ) =>
+        {
+            reader
+        }
+        _ => return node.refuse(format!("{} is neither an EXR nor a Radiance HDR", loader.label(&path))),
+    };
+    let rgb = match reader.decode() {
+        Ok(image) => image.into_rgb32f(),
+        Err(error) => return node.refuse(format!("{}: {error}", loader.label(&path))),
+    };
+    let (width, height) = (rgb.width() as usize, rgb.height() as usize);
+    if width > limits::IMAGE_SIDE || height > limits::IMAGE_SIDE {
+        return node.refuse(format!("a picture has at most {} pixels a side", limits::IMAGE_SIDE));
+    }
+    let pixels: Vec<[f32; 3]> = rgb.pixels().map(|p| p.0).collect();
+    if pixels.iter().flatten().any(|x| !x.is_finite() || *x < 0.0) {
+        return node.refuse("radiance is finite and not negative");
+    }
+    Some(LinearImage::new(width, height, &pixels))
 }
 
 /// The lamp's position and its emitters, each as far as it is sound: where puppets may hang depends on the position alone.

@@ -31,7 +31,7 @@ pub use puppet::figure::Pose;
 pub use puppet::manifest::Part;
 pub use puppet::masks::Masks;
 pub use puppet::svg::Mended;
-pub use scene::Scene;
+pub use scene::{AnyScene, Scene};
 pub use staging::{Puppet, Setting, Staging};
 pub use theatre::*;
 pub use timeline::Timeline;

@@ -18,6 +18,12 @@ pub const SCENE_TEXELS: usize = 1 << 28;
 pub const PART_TEXELS: usize = 1 << 27;
 /// Emitters of the lamp.
 pub const EMITTERS: usize = 64;
+/// Objects of a stage.
+pub const OBJECTS: usize = 256;
+/// Lights of a stage.
+pub const LIGHTS: usize = 64;
+/// Bytes of a mesh's file.
+pub const MESH_BYTES: usize = 256 << 20;
 /// Puppets.
 pub const PUPPETS: usize = 256;
 /// Parts of a puppet.

@@ -54,6 +54,20 @@ impl<'a> Loader<'a> {
         Some((path, bytes))
     }
 
+    /// A file by its path from the root, at most `most` bytes. Errors: why it can't be had.
+    pub(crate) fn bytes(&self, path: &str, most: usize) -> Result<Rc<[u8]>, String> {
+        let known = self.files.borrow().get(path).cloned();
+        let bytes: Rc<[u8]> = match known {
+            Some(bytes) => bytes,
+            None => self.assets.read(path).map_err(|e| format!("{}: {e}", self.label(path)))?.into(),
+        };
+        if bytes.len() > most {
+            return Err(format!("{} has more than {most} bytes", self.label(path)));
+        }
+        self.files.borrow_mut().insert(path.to_owned(), bytes.clone());
+        Ok(bytes)
+    }
+
     /// Every file that was read, by its path from the root.
     pub(crate) fn files(self) -> BTreeMap<String, Rc<[u8]>> {
         self.files.into_inner()

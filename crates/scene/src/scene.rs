@@ -14,6 +14,7 @@ use crate::limits;
 use crate::load::Loader;
 use crate::puppet::masks::Masks;
 use crate::puppet::read::{Entry, degrees, find_part, pose_deg, tilt};
+use crate::stage::StageScene;
 use crate::staging::{Misplaced, Puppet, Staging};
 use crate::subject::{self, Subject};
 use crate::theatre::{Albedo, Ambient, Emitter, Exposure, Lamp, Mask, Texels, Theatre};
@@ -35,13 +36,21 @@ pub struct Scene {
     warnings: Vec<Problem>,
 }
 
-impl Scene {
-    /// Reads a scene file. The files that it names lie below the scene's folder, or below that folder's parent when
-    /// the folder is called `scenes`.
+/// A scene of either subject.
+#[derive(Debug)]
+pub enum AnyScene {
+    /// Puppets between a lamp and a screen.
+    Theatre(Scene),
+    /// Meshes on a stage.
+    Stage(StageScene),
+}
+
+impl AnyScene {
+    /// As [`Scene::from_path`], whatever it shows.
     ///
     /// # Errors
     /// Everything that is wrong with the scene and the files that it names.
-    pub fn from_path(path: &Path) -> Result<Scene, Problems> {
+    pub fn from_path(path: &Path) -> Result<AnyScene, Problems> {
         let label = path.to_string_lossy();
         let refuse = |rule: String| Problems::new(vec![Problem::new(label.clone(), "", None, rule)]);
         let bytes =
@@ -51,13 +60,52 @@ impl Scene {
         read(&label, &name, &text, &DirAssets::new(root))
     }
 
+    /// As [`Scene::parse`], whatever it shows.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scene and the files that it names.
+    pub fn parse(name: &str, toml: &str, assets: &dyn Assets) -> Result<AnyScene, Problems> {
+        read(name, name, toml, assets)
+    }
+
+    /// What may be a mistake in it or in the files that it names, though it can be drawn.
+    pub fn warnings(&self) -> &[Problem] {
+        match self {
+            Self::Theatre(scene) => scene.warnings(),
+            Self::Stage(scene) => scene.warnings(),
+        }
+    }
+
+    fn theatre(self, label: &str) -> Result<Scene, Problems> {
+        match self {
+            Self::Theatre(scene) => Ok(scene),
+            Self::Stage(_) => Err(Problems::new(vec![Problem::new(
+                label,
+                "subject",
+                Some("\"stage\"".to_owned()),
+                "a theatre is asked for here, not a stage",
+            )])),
+        }
+    }
+}
+
+impl Scene {
+    /// Reads a scene file. The files that it names lie below the scene's folder, or below that folder's parent when
+    /// the folder is called `scenes`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scene and the files that it names.
+    pub fn from_path(path: &Path) -> Result<Scene, Problems> {
+        AnyScene::from_path(path)?.theatre(&path.to_string_lossy())
+    }
+
     /// Reads a scene from text. `name` is the scene's path from the assets' root (`scenes/arjuna.toml`): paths in the
     /// scene are relative to it, and messages use it.
     ///
     /// # Errors
     /// Everything that is wrong with the scene and the files that it names.
     pub fn parse(name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, Problems> {
-        read(name, name, toml, assets)
+        AnyScene::parse(name, toml, assets)?.theatre(name)
     }
 
     /// What messages call it: the file that it was read from.
@@ -127,11 +175,14 @@ impl Scene {
 }
 
 /// `label` is how messages call the file, `name` its path from the assets' root.
-fn read(label: &str, name: &str, toml: &str, assets: &dyn Assets) -> Result<Scene, Problems> {
+fn read(label: &str, name: &str, toml: &str, assets: &dyn Assets) -> Result<AnyScene, Problems> {
     let reading = Reading::default();
     let scene = read_into(&reading, label, name, toml, assets);
     let warnings = reading.take_warnings();
-    reading.end(scene.map(|scene| Scene { warnings, ..scene }))
+    reading.end(scene.map(|scene| match scene {
+        AnyScene::Theatre(scene) => AnyScene::Theatre(Scene { warnings, ..scene }),
+        AnyScene::Stage(scene) => AnyScene::Stage(StageScene { warnings, ..scene }),
+    }))
 }
 
 /// Reads a scene with the files that it names into a reading.
@@ -141,7 +192,7 @@ pub(crate) fn read_into(
     name: &str,
     toml: &str,
     assets: &dyn Assets,
-) -> Option<Scene> {
+) -> Option<AnyScene> {
     let loader = Loader::new(assets, label, name, reading);
     let source = reading.source(label, toml);
     if toml.len() > limits::SCENE_BYTES {
@@ -152,17 +203,21 @@ pub(crate) fn read_into(
     source.read(|root| read_scene(root, label, name, loader))
 }
 
-fn read_scene(root: &Node, label: &str, name: &str, loader: Loader) -> Option<Scene> {
+fn read_scene(root: &Node, label: &str, name: &str, loader: Loader) -> Option<AnyScene> {
     let mut sections = root.table()?;
     let subject = sections.optional(
         "subject",
-        "what the scene shows; without it a theatre, which is all that can be drawn yet",
+        "what the scene shows, \"theatre\" or \"stage\"; without it a theatre",
         Subject::Theatre,
         subject::subject,
     );
-    if subject.is_some_and(|subject| subject != Subject::Theatre) {
+    match subject {
+        Some(Subject::Theatre) | None => {}
+        Some(Subject::Stage) => {
+            return crate::stage::read::stage(root, sections, label, name, loader).map(AnyScene::Stage);
+        }
         // It has other sections: what lacks of a theatre's would only hide the reason.
-        return None;
+        Some(Subject::Plate) => return None,
     }
     let screen = sections.need("screen", "the [screen] section", |n| fields::screen(n, name, &loader));
     let (lamp_m, emitters) = sections.need("lamp", "the [lamp] section", fields::lamp).unwrap_or_default();
@@ -218,8 +273,8 @@ fn read_scene(root: &Node, label: &str, name: &str, loader: Loader) -> Option<Sc
     });
     let planes = settled.collect();
     let still = Theatre { screen, lamp, ambient, planes, exposure };
-    let sha256 = hash(&root.canonical(), loader.files());
-    Some(Scene {
+    let sha256 = hash(&root.canonical(), loader.files(), &BTreeMap::new());
+    Some(AnyScene::Theatre(Scene {
         label: label.to_owned(),
         sha256,
         toml: root.to_toml(),
@@ -228,7 +283,7 @@ fn read_scene(root: &Node, label: &str, name: &str, loader: Loader) -> Option<Sc
         timeline,
         still,
         warnings: Vec::new(),
-    })
+    }))
 }
 
 fn read_puppets<'a>(sections: &mut Fields<'a>, name: &str, loader: &Loader) -> Vec<Option<Entry<'a>>> {
@@ -398,7 +453,12 @@ fn target<'r>(node: &Node, entries: &'r [Option<Entry>]) -> Option<Driven<'r>> {
 }
 
 /// Each piece is preceded by its length, so that no two different inputs run together to the same bytes.
-fn hash(canonical: &str, files: BTreeMap<String, Rc<[u8]>>) -> String {
+/// `made` are hashes of what was made of files.
+pub(crate) fn hash(
+    canonical: &str,
+    files: BTreeMap<String, Rc<[u8]>>,
+    made: &BTreeMap<String, String>,
+) -> String {
     let mut sha = Sha256::new();
     let mut piece = |bytes: &[u8]| {
         sha.update((bytes.len() as u64).to_le_bytes());
@@ -409,6 +469,10 @@ fn hash(canonical: &str, files: BTreeMap<String, Rc<[u8]>>) -> String {
     for (path, bytes) in &files {
         piece(path.as_bytes());
         piece(bytes);
+    }
+    for (place, hash) in made {
+        piece(place.as_bytes());
+        piece(hash.as_bytes());
     }
     hex::encode(sha.finalize())
 }

@@ -44,6 +44,7 @@ impl Staging {
                 Target::Tilt(p) => staging.puppets[p].tilt_deg = [value[0], value[1]],
                 Target::Rotate(p) => staging.puppets[p].pose.rotate_deg = value[0],
                 Target::Pose(p, part) => staging.puppets[p].pose.parts_deg[part] = value[0],
+                Target::Stage(_) => {}
             }
         }
         staging

@@ -18,10 +18,9 @@ pub(crate) fn subject(node: &Node) -> Option<Subject> {
     let choices = [("theatre", Subject::Theatre), ("stage", Subject::Stage), ("plate", Subject::Plate)];
     let subject = node.choice(&choices)?;
     let what = match subject {
-        Subject::Theatre => return Some(subject),
-        Subject::Stage => "a stage of meshes",
+        Subject::Theatre | Subject::Stage => return Some(subject),
         Subject::Plate => "a photographed shadow",
     };
-    node.refuse::<()>(format!("{what} can't be drawn yet, only a \"theatre\""));
+    node.refuse::<()>(format!("{what} can't be drawn yet, only a \"theatre\" or a \"stage\""));
     Some(subject)
 }

@@ -43,6 +43,8 @@ pub(crate) enum Target {
     Rotate(usize),
     /// Puppet, part.
     Pose(usize, usize),
+    /// Of a stage.
+    Stage(crate::stage::Moved),
 }
 
 /// How values go from one key to the next.

@@ -4,12 +4,17 @@
 
 mod camera;
 mod light;
+mod moving;
 mod object;
+pub(crate) mod read;
+mod scene;
 mod slide;
 
 pub use camera::{Camera, Projection};
 pub use light::{AreaShape, Environment, Light, LightKind, Projector};
 pub use object::{Form, MeshForm, Object, Surface};
+pub(crate) use moving::Moved;
+pub use scene::StageScene;
 pub use slide::{Pattern, Slide};
 
 use crate::theatre::Exposure;

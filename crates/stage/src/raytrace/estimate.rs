@@ -350,8 +350,8 @@ impl<'a> Estimator<'a> {
             Some(position) => Rays::from_point(position, &std::array::from_fn(|r| -towards(r))),
             None => leaving(&positions, &std::array::from_fn(towards), self.world.skin_m),
         };
-        for r in 0..LANES {
-            match sent[r] {
+        for (r, sent) in sent.iter().enumerate() {
+            match sent {
                 None => packet.stop(r),
                 Some(light) if light.ends => packet.far[r] = 1.0 - self.world.skin_m / light.towards.length(),
                 Some(_) => {}

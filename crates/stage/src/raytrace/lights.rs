@@ -184,7 +184,7 @@ impl Directions {
     fn pick(&self, u: [f64; 2]) -> (DVec3, f64) {
         let [w, h] = self.size;
         let total = self.rows[h - 1];
-        if !(total > 0.0) {
+        if total <= 0.0 {
             return (DVec3::Y, 0.0);
         }
         let (y, fy, row) = find(&self.rows, u[0]);

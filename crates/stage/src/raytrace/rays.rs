@@ -12,6 +12,7 @@ pub type Lanes = [f64; LANES];
 pub const NOTHING: u32 = u32::MAX;
 
 /// Where rays begin, metres.
+#[allow(clippy::large_enum_variant, reason = "one on the stack, copied with its rays")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
     /// All at one point, which is cheaper.

@@ -42,7 +42,7 @@ fn sphere(radius: f64, origin: DVec3, direction: DVec3, near: f64, far: f64) -> 
     let middle = -origin.dot(direction) / a;
     let nearest = origin + middle * direction;
     let rest = radius * radius - nearest.length_squared();
-    if !(rest >= 0.0) {
+    if rest < 0.0 || rest.is_nan() {
         return None;
     }
     let half = (rest / a).sqrt();

@@ -166,7 +166,7 @@ impl<'a, const ONE: bool, const ANY: bool> Walk<'a, ONE, ANY> {
             } else {
                 2
             };
-            if longest != axis || !(size[z] > 0.0) {
+            if longest != axis || size[z] == 0.0 || size[z].is_nan() {
                 far[r] = f64::NEG_INFINITY;
             }
             some |= far[r] > rays.near;

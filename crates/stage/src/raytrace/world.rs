@@ -256,8 +256,8 @@ impl Thing<'_> {
         let Some(caster) = &self.caster else { return seen.blocks(&own) };
         // Itself as it is seen, others as it casts.
         let (mut onto_itself, mut onto_others) = (own.clone(), own);
-        for r in 0..LANES {
-            if of[r] == k { onto_others.stop(r) } else { onto_itself.stop(r) }
+        for (r, of) in of.iter().enumerate() {
+            if *of == k { onto_others.stop(r) } else { onto_itself.stop(r) }
         }
         let mut bits = caster.blocks(&onto_others);
         if of.contains(&k) {
