@@ -14,6 +14,7 @@ pub mod folder;
 mod frame;
 #[cfg_attr(not(feature = "gpu"), path = "no_gpu.rs")]
 pub mod gpu;
+pub mod knobs;
 pub mod simd;
 pub mod sobol;
 

@@ -2,7 +2,7 @@
 
 use crate::library::{BuiltIn, Library};
 use kelir_reader::did_you_mean;
-use kelir_scene::{Problems, Scene};
+use kelir_scene::{AnyScene, Problems, Scene};
 use std::path::Path;
 
 /// Kinds of files that ship, each a folder of TOML files.
@@ -70,17 +70,35 @@ pub fn is_file(argument: &Path) -> bool {
     text.contains(['/', std::path::MAIN_SEPARATOR]) || text.to_ascii_lowercase().ends_with(".toml")
 }
 
-/// Reads a scene: a file, or one that ships by its name.
+/// Reads a scene of a theatre: a file, or one that ships by its name.
 ///
 /// # Errors
-/// Everything that is wrong with it; a name that nothing has.
+/// Everything that is wrong with it, that it is a stage too; a name that nothing has.
 pub fn scene(argument: &Path) -> Result<Scene, SceneRefused> {
     if is_file(argument) {
         return Ok(Scene::from_path(argument)?);
     }
+    let (path, text) = shipped(argument)?;
+    Ok(Scene::parse(&path, &text, &Library::built_in())?)
+}
+
+/// Reads a scene, whatever it shows: a file, or one that ships by its name.
+///
+/// # Errors
+/// Everything that is wrong with it; a name that nothing has.
+pub fn any_scene(argument: &Path) -> Result<AnyScene, SceneRefused> {
+    if is_file(argument) {
+        return Ok(AnyScene::from_path(argument)?);
+    }
+    let (path, text) = shipped(argument)?;
+    Ok(AnyScene::parse(&path, &text, &Library::built_in())?)
+}
+
+/// Path and text of a scene that ships.
+fn shipped(argument: &Path) -> Result<(String, String), SceneRefused> {
     let path = Shipped::Scene.path(&argument.to_string_lossy()).map_err(SceneRefused::Unknown)?;
     let text = Shipped::text(&path).unwrap_or_default();
-    Ok(Scene::parse(&path, &text, &Library::built_in())?)
+    Ok((path, text))
 }
 
 /// Why there is no such scene.

@@ -1,5 +1,6 @@
 //! What a job asks of what it draws: little enough that a stage of meshes or a photographed plate could answer as a theatre does.
 
+use kelir_scene::stage::{Stage, StageScene};
 use kelir_scene::{Masks, Scene, Theatre, Timeline};
 
 use kelir_frame::exposure::Rule;
@@ -135,6 +136,71 @@ impl Subject for Theatre {
 
     fn brightest(&self, view: &View) -> f64 {
         exposure::brightest(self, view)
+    }
+}
+
+impl Subject for Stage {
+    fn sides_m(&self) -> [f64; 2] {
+        [self.camera.aspect, 1.0]
+    }
+
+    fn white(all: &[Self], _: &View) -> f64 {
+        kelir_stage::exposure::white(all)
+    }
+
+    fn bytes(&self, view: &View) -> u64 {
+        let triangles = self.triangles() as u64;
+        view.size[0] as u64 * view.size[1] as u64 * 128 + triangles * 256
+    }
+
+    fn same_staging(&self, other: &Self) -> bool {
+        self.same_staging(other)
+    }
+
+    fn penumbra(&self, view: &View) -> Vec<bool> {
+        kelir_stage::exposure::penumbra(self, view)
+    }
+
+    /// Surfaces have albedos of their own: what is measured is π times the radiance that is seen.
+    fn albedo(&self, _: &View) -> PixelAlbedo {
+        PixelAlbedo::Uniform([1.0; 3])
+    }
+
+    fn brightest(&self, _: &View) -> f64 {
+        std::f64::consts::PI * kelir_stage::exposure::white(std::slice::from_ref(self))
+    }
+}
+
+impl Staged for StageScene {
+    type Subject = Stage;
+    type Kept = ();
+
+    fn sha256(&self) -> &str {
+        self.sha256()
+    }
+
+    fn label(&self) -> &str {
+        self.label()
+    }
+
+    fn timeline(&self) -> Option<&Timeline> {
+        self.timeline()
+    }
+
+    fn still(&self) -> Stage {
+        self.still()
+    }
+
+    fn at(&self, time_s: f64, (): &mut ()) -> Stage {
+        self.at(time_s)
+    }
+
+    fn lit(&self, time_s: Option<f64>) -> Stage {
+        time_s.map_or_else(|| self.still(), |time_s| self.at(time_s))
+    }
+
+    fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Renderer<Stage>>, RenderError> {
+        techniques::stage_renderer(technique, backend)
     }
 }
 

@@ -127,10 +127,7 @@ pub(crate) fn picture_light(node: &Node, name: &str, loader: &Loader) -> Option<
     let decoded = image::ImageReader::new(std::io::Cursor::new(&bytes[..])).with_guessed_format();
     let reader = match decoded {
         Ok(reader)
-            if matches!(
-                reader.format(),
-                Some(image::ImageFormat::OpenExr | image::ImageFormat::Hdr)
-            ) =>
+            if matches!(reader.format(), Some(image::ImageFormat::OpenExr | image::ImageFormat::Hdr)) =>
         {
             reader
         }

@@ -2,4 +2,5 @@
 //!
 //! [`raytrace`] is the truth that everything else is held to.
 
+pub mod exposure;
 pub mod raytrace;

@@ -2,7 +2,7 @@
 //!
 //! Everything that techniques share lives beside their folders: the irradiance of an unshadowed emitter ([`irradiance`]), where a point of
 //! the screen sees the emitter on an occluder plane ([`project`]), the albedo on the pixel grid ([`albedo`]), the radiance that is white
-//! ([`exposure`]) and what a knob is ([`knobs`]). How exact it is and how fast its inner loops are: [`numerics`] and [`kernels`];
+//! ([`exposure`]). How exact it is and how fast its inner loops are: [`numerics`] and [`kernels`];
 //! whether a GPU draws what the native code does: `twins`.
 
 #![cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "the GPU's twins are not built"))]
@@ -13,7 +13,6 @@ mod emitters;
 pub mod exposure;
 pub mod irradiance;
 pub mod kernels;
-pub mod knobs;
 pub mod numerics;
 pub mod penumbra;
 pub mod project;

@@ -8,7 +8,9 @@ use kelir_render::exposure::Rule;
 use kelir_render::film::{Film, Format, Run};
 use kelir_render::folder::Folder;
 use kelir_render::job::{self, Output};
+use kelir_render::subject::Staged;
 use kelir_render::{Meter, Stats, file};
+use kelir_scene::AnyScene;
 use serde::Serialize;
 use serde_json::json;
 
@@ -63,7 +65,7 @@ impl Target {
     }
 
     /// Adds the frame that was drawn last; `repeated` says that it equals the one before.
-    fn frame(&mut self, drawing: &job::Drawing<'_>, repeated: bool) -> Result<()> {
+    fn frame<S: Staged>(&mut self, drawing: &job::Drawing<'_, S>, repeated: bool) -> Result<()> {
         match self {
             Self::Film(film) => film.frame(drawing.codes()).map_err(render_error)?,
             Self::Folder { folder, names } => {
@@ -91,7 +93,14 @@ fn is_frame(name: &str) -> bool {
 
 /// Runs the command.
 pub(crate) fn run(args: Args) -> Result<()> {
-    let mut job = args.drawing.job(Output::Animation, args.exposure, None)?;
+    match args.drawing.scene()? {
+        AnyScene::Theatre(scene) => animate(&args, scene),
+        AnyScene::Stage(scene) => animate(&args, scene),
+    }
+}
+
+fn animate<S: Staged>(args: &Args, scene: S) -> Result<()> {
+    let mut job = args.drawing.job(scene, Output::Animation, args.exposure, None)?;
     let Some(timeline) = job.scene.timeline() else {
         return Err(bad_input(format!("{}: timeline: an animation needs one", args.drawing.scene.display())));
     };

@@ -8,9 +8,9 @@ use clap::builder::PossibleValuesParser;
 use kelir_house::shipped;
 use kelir_render::exposure::Rule;
 use kelir_render::job::{Job, Output};
-use kelir_render::subject::check_view;
+use kelir_render::subject::{Staged, Subject, check_view};
 use kelir_render::{Backend, Meter, Pixel, RenderError, Technique, View};
-use kelir_scene::{Scene, Theatre};
+use kelir_scene::{AnyScene, Scene};
 use serde::Serialize;
 
 use super::knobs::Turned;
@@ -94,12 +94,24 @@ impl From<ExposureName> for Rule {
 }
 
 impl Drawing {
-    /// What is asked of the renderer, as a study would ask it.
-    pub(crate) fn job(&self, output: Output, exposure: ExposureName, time_s: Option<f64>) -> Result<Job> {
-        let scene = progress::watch(&Meter::default(), "reading the scene", || self.load())?;
+    /// Reads the scene, with its warnings on the terminal.
+    pub(super) fn scene(&self) -> Result<AnyScene> {
+        let read = || shipped::any_scene(&self.scene).map_err(bad_input);
+        let scene = progress::watch(&Meter::default(), "reading the scene", read)?;
         for warning in scene.warnings() {
             eprintln!("warning: {warning}");
         }
+        Ok(scene)
+    }
+
+    /// What is asked of the renderer, as a study would ask it.
+    pub(super) fn job<S: Staged>(
+        &self,
+        scene: S,
+        output: Output,
+        exposure: ExposureName,
+        time_s: Option<f64>,
+    ) -> Result<Job<S>> {
         Ok(Job {
             technique: self.technique()?,
             view: self.view(&scene.still())?,
@@ -118,21 +130,21 @@ impl Drawing {
         Technique::parse(&self.technique, &self.turned.0).map_err(render_error)
     }
 
-    /// Reads and validates the scene; every problem is named.
+    /// Reads and validates a theatre's scene; every problem is named.
     pub(crate) fn load(&self) -> Result<Scene> {
         shipped::scene(&self.scene).map_err(bad_input)
     }
 
     /// The image asked for. Errors: a size that can't be drawn.
-    pub(crate) fn view(&self, theatre: &Theatre) -> Result<View> {
+    pub(crate) fn view(&self, subject: &impl Subject) -> Result<View> {
         let pixel = match self.pixel {
             PixelName::Area => Pixel::Area,
             PixelName::Centre => Pixel::Centre,
         };
-        let aspect = theatre.screen.height_m / theatre.screen.width_m;
-        let size = self.size.unwrap_or_else(|| [1920, (1920.0 * aspect).round() as usize]);
+        let [width, height] = subject.sides_m();
+        let size = self.size.unwrap_or_else(|| [1920, (1920.0 * height / width).round().max(1.0) as usize]);
         let view = View { size, pixel, skip: !self.no_skip };
-        check_view(theatre, &view).map_err(render_error)?;
+        check_view(subject, &view).map_err(render_error)?;
         Ok(view)
     }
 }

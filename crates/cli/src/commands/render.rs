@@ -7,7 +7,9 @@ use anyhow::Result;
 use kelir_render::encode::{self, Attributes};
 use kelir_render::exposure::Rule;
 use kelir_render::job::{self, Drawn, Output};
+use kelir_render::subject::Staged;
 use kelir_render::{Frame, Meter, RenderError, Stats, file};
+use kelir_scene::AnyScene;
 use serde::Serialize;
 
 use super::drawing::{Drawing, ExposureName, Told, render_error};
@@ -50,7 +52,14 @@ pub(crate) fn run(args: Args) -> Result<()> {
                 )));
             }
         };
-    let mut job = args.drawing.job(Output::Still, args.exposure, args.time)?;
+    match args.drawing.scene()? {
+        AnyScene::Theatre(scene) => still(&args, &container, scene),
+        AnyScene::Stage(scene) => still(&args, &container, scene),
+    }
+}
+
+fn still<S: Staged>(args: &Args, container: &Container, scene: S) -> Result<()> {
+    let mut job = args.drawing.job(scene, Output::Still, args.exposure, args.time)?;
     let (technique, size, exposure) = (job.technique.clone(), job.view.size, job.exposure);
     let scene_sha256 = job.scene.sha256().to_owned();
 
@@ -68,7 +77,7 @@ pub(crate) fn run(args: Args) -> Result<()> {
     let meter = Meter::default();
     drawing.watch(&meter);
     let (bytes, stats, linear) =
-        progress::watch(&meter, technique.name(), || draw(&mut drawing, &container, &attributes))
+        progress::watch(&meter, technique.name(), || draw(&mut drawing, container, &attributes))
             .map_err(render_error)?;
     file::write_atomic(&args.output, &bytes)?;
 
@@ -93,8 +102,8 @@ pub(crate) fn run(args: Args) -> Result<()> {
 }
 
 /// The file's bytes, what was done, and the image in linear light where it was drawn in that.
-fn draw(
-    drawing: &mut job::Drawing<'_>,
+fn draw<S: Staged>(
+    drawing: &mut job::Drawing<'_, S>,
     container: &Container,
     attributes: &Attributes,
 ) -> Result<(Vec<u8>, Stats, Option<Frame>), RenderError> {

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use kelir_house::shipped::{self, SceneRefused, Shipped};
 use kelir_render::file;
-use kelir_scene::{Mending, Scene};
+use kelir_scene::stage::StageScene;
+use kelir_scene::{AnyScene, Mending, Scene, Timeline};
 use serde::Serialize;
 use serde_json::json;
 
@@ -49,11 +50,14 @@ pub(crate) fn run(command: Command) -> Result<()> {
 fn check(files: &[PathBuf], json: bool) -> Result<()> {
     let mut checked = Checked::new(json);
     for file in files {
-        match shipped::scene(file) {
+        match shipped::any_scene(file) {
             Ok(scene) => checked.good(
                 file,
                 &describe(&scene),
-                json!(Described::of(&name(file), "", &scene)),
+                match &scene {
+                    AnyScene::Theatre(scene) => json!(Described::of(&name(file), "", scene)),
+                    AnyScene::Stage(scene) => json!(DescribedStage::of(&name(file), scene)),
+                },
                 scene.warnings(),
             )?,
             Err(SceneRefused::Unknown(rule)) => checked.unreadable(file, rule),
@@ -109,11 +113,48 @@ fn name(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-fn describe(scene: &Scene) -> String {
-    let theatre = scene.still();
-    let frames =
-        scene.timeline().map_or_else(String::new, |timeline| format!(", {} frames", timeline.frame_count()));
-    format!("{} puppets, {} emitters{frames}", theatre.planes.len(), theatre.lamp.emitters.len())
+fn describe(scene: &AnyScene) -> String {
+    let frames = |timeline: Option<&Timeline>| {
+        timeline.map_or_else(String::new, |timeline| format!(", {} frames", timeline.frame_count()))
+    };
+    match scene {
+        AnyScene::Theatre(scene) => {
+            let (theatre, frames) = (scene.still(), frames(scene.timeline()));
+            format!("{} puppets, {} emitters{frames}", theatre.planes.len(), theatre.lamp.emitters.len())
+        }
+        AnyScene::Stage(scene) => {
+            let (stage, frames) = (scene.still(), frames(scene.timeline()));
+            let (objects, lights) = (stage.objects.len(), stage.lights.len());
+            format!("{objects} objects of {} triangles, {lights} lights{frames}", stage.triangles())
+        }
+    }
+}
+
+/// A stage, as `check` tells it.
+#[derive(Serialize)]
+struct DescribedStage {
+    name: String,
+    objects: Vec<String>,
+    /// Of all meshes, those that cast shadows alone too.
+    triangles: usize,
+    lights: Vec<String>,
+    /// Frames of its timeline; null for a scene that stands still.
+    frames: Option<usize>,
+    fps: Option<f64>,
+}
+
+impl DescribedStage {
+    fn of(name: &str, scene: &StageScene) -> Self {
+        let stage = scene.still();
+        Self {
+            name: name.to_owned(),
+            triangles: stage.triangles(),
+            objects: stage.objects.into_iter().map(|object| object.name).collect(),
+            lights: stage.lights.into_iter().map(|light| light.name).collect(),
+            frames: scene.timeline().map(Timeline::frame_count),
+            fps: scene.timeline().map(|timeline| timeline.fps),
+        }
+    }
 }
 
 /// A scene in a list.

@@ -3,22 +3,23 @@
 use std::collections::BTreeMap;
 
 use kelir_frame::RenderError;
+use kelir_frame::knobs::told;
+pub use kelir_frame::knobs::{Knob, Range};
 use kelir_reader::{did_you_mean, list};
-use kelir_theatre::knobs::told;
-pub use kelir_theatre::knobs::{Knob, Range};
 use serde_json::{Map, Value};
 
 use super::Technique;
 
 impl Technique {
     /// One of each, with its knobs as they stand when nobody turns one.
-    pub fn all() -> [Technique; 5] {
+    pub fn all() -> [Technique; 6] {
         [
             Self::Pa(Default::default()),
             Self::Mc(Default::default()),
             Self::Points(Default::default()),
             Self::Pcss(Default::default()),
             Self::Oracle(Default::default()),
+            Self::Raytrace(Default::default()),
         ]
     }
 

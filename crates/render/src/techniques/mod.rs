@@ -1,9 +1,11 @@
-//! The techniques: adding one is a new folder in kelir-theatre, one variant of [`Technique`] and one line in each `match` on it.
+//! The techniques: adding one is a new folder in the crate of what it draws (kelir-theatre, kelir-stage), one variant of [`Technique`] and one line in each `match` on it.
 
 pub mod knobs;
 
 use kelir_frame::{Backend, RenderError, Renderer};
 use kelir_scene::Theatre;
+use kelir_scene::stage::Stage;
+use kelir_stage::raytrace;
 use kelir_theatre::{mc, oracle, pa, pcss, points};
 use knobs::Knob;
 use serde::{Deserialize, Serialize};
@@ -22,6 +24,8 @@ pub enum Technique {
     Pcss(pcss::Knobs),
     /// Slow f64 sums without random numbers, for crops and tests.
     Oracle(oracle::Knobs),
+    /// Rays, the ground truth of a stage.
+    Raytrace(raytrace::Knobs),
 }
 
 impl Technique {
@@ -33,6 +37,7 @@ impl Technique {
             Self::Points(_) => "points",
             Self::Pcss(_) => "pcss",
             Self::Oracle(_) => "oracle",
+            Self::Raytrace(_) => "raytrace",
         }
     }
 
@@ -44,6 +49,7 @@ impl Technique {
             Self::Points(_) => points::REVISION,
             Self::Pcss(_) => pcss::REVISION,
             Self::Oracle(_) => oracle::REVISION,
+            Self::Raytrace(_) => raytrace::REVISION,
         }
     }
 
@@ -55,6 +61,7 @@ impl Technique {
             Self::Points(_) => points::KNOBS,
             Self::Pcss(_) => pcss::KNOBS,
             Self::Oracle(_) => oracle::KNOBS,
+            Self::Raytrace(_) => raytrace::KNOBS,
         }
     }
 
@@ -66,13 +73,14 @@ impl Technique {
             Self::Points(_) => "point lights averaged",
             Self::Pcss(_) => "percentage-closer soft shadows",
             Self::Oracle(_) => "slow f64 sums, for crops and tests",
+            Self::Raytrace(_) => "rays, the ground truth of a stage",
         }
     }
 
     /// Whether it is the ground truth: unbiased, with a standard error for every pixel, so that others are measured against it.
     pub fn is_truth(&self) -> bool {
         match self {
-            Self::Mc(_) => true,
+            Self::Mc(_) | Self::Raytrace(_) => true,
             Self::Pa(_) | Self::Points(_) | Self::Pcss(_) | Self::Oracle(_) => false,
         }
     }
@@ -81,19 +89,24 @@ impl Technique {
     pub fn truth_samples(&self) -> u32 {
         match self {
             Self::Mc(knobs) => knobs.spp,
+            Self::Raytrace(knobs) => knobs.spp,
             Self::Pa(_) | Self::Points(_) | Self::Pcss(_) | Self::Oracle(_) => 0,
         }
     }
 
-    /// The ground truth, where nobody asks for more of it.
+    /// A theatre's ground truth, where nobody asks for more of it.
     pub fn truth() -> Self {
         Self::Mc(mc::Knobs::default())
     }
 
     /// From now on the ground truth takes at most so many samples a pixel, and what else draws is as it was.
     pub(crate) fn sample_at_most(&mut self, samples: u32) {
-        if let Self::Mc(knobs) = self {
-            (knobs.spp, knobs.target_error, knobs.time_limit_s) = (knobs.spp.min(samples), None, None);
+        match self {
+            Self::Mc(knobs) => {
+                (knobs.spp, knobs.target_error, knobs.time_limit_s) = (knobs.spp.min(samples), None, None);
+            }
+            Self::Raytrace(knobs) => knobs.spp = knobs.spp.min(samples),
+            Self::Pa(_) | Self::Points(_) | Self::Pcss(_) | Self::Oracle(_) => {}
         }
     }
 
@@ -105,11 +118,33 @@ impl Technique {
             Self::Points(knobs) => knobs.check(),
             Self::Pcss(knobs) => knobs.check(),
             Self::Oracle(knobs) => knobs.check(),
+            Self::Raytrace(knobs) => knobs.check(),
         }
     }
 }
 
-/// A renderer for `technique`. Errors: a knob out of range, or `Backend::Gpu` without any adapter.
+/// What `technique` cannot draw.
+fn inapplicable(technique: &Technique, subject: &str, others: &str) -> RenderError {
+    let reason = format!("it shows a {subject}, which {others}");
+    RenderError::Inapplicable { technique: technique.name(), reason }
+}
+
+/// A renderer of stages. Errors: a knob out of range; a technique of theatres; [`Backend::Gpu`], which no technique of stages has.
+pub fn stage_renderer(
+    technique: &Technique,
+    backend: Backend,
+) -> Result<Box<dyn Renderer<Stage>>, RenderError> {
+    let Technique::Raytrace(knobs) = technique else {
+        return Err(inapplicable(technique, "stage", "raytrace alone draws"));
+    };
+    if backend == Backend::Gpu {
+        return Err(RenderError::Gpu("raytrace draws on the CPU alone".into()));
+    }
+    knobs.check()?;
+    Ok(raytrace::renderer(knobs))
+}
+
+/// A renderer of theatres. Errors: a knob out of range, a technique of stages, or `Backend::Gpu` without any adapter.
 pub fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Renderer<Theatre>>, RenderError> {
     match technique {
         Technique::Pa(knobs) => pa::renderer(knobs, backend),
@@ -117,5 +152,6 @@ pub fn renderer(technique: &Technique, backend: Backend) -> Result<Box<dyn Rende
         Technique::Points(knobs) => points::renderer(knobs, backend),
         Technique::Pcss(knobs) => pcss::renderer(knobs, backend),
         Technique::Oracle(knobs) => oracle::renderer(knobs),
+        Technique::Raytrace(_) => Err(inapplicable(technique, "theatre", "the other techniques draw")),
     }
 }

@@ -50,6 +50,33 @@ pub enum LightKind {
     Projector(Box<Projector>),
 }
 
+impl LightKind {
+    /// Whether its shadows have penumbrae: it is no point and no single direction.
+    pub fn is_soft(&self) -> bool {
+        match self {
+            Self::Point { .. } | Self::Projector(_) => false,
+            Self::Directional { angular_radius_deg, .. } => *angular_radius_deg > 0.0,
+            Self::Area { .. } | Self::Environment(_) => true,
+        }
+    }
+
+    /// Whether it is as it is in `other`, in all that a timeline can move.
+    fn same_staging(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Point { position_m: a, .. }, Self::Point { position_m: b, .. }) => a == b,
+            (Self::Area { pose: a, .. }, Self::Area { pose: b, .. }) => a == b,
+            (Self::Projector(a), Self::Projector(b)) => a.pose == b.pose && a.slide.same_staging(&b.slide),
+            _ => true,
+        }
+    }
+}
+
+impl Light {
+    pub(super) fn same_staging(&self, other: &Self) -> bool {
+        self.kind.same_staging(&other.kind)
+    }
+}
+
 /// An outline in z = 0 around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AreaShape {

@@ -12,8 +12,8 @@ mod slide;
 
 pub use camera::{Camera, Projection};
 pub use light::{AreaShape, Environment, Light, LightKind, Projector};
-pub use object::{Form, MeshForm, Object, Surface};
 pub(crate) use moving::Moved;
+pub use object::{Form, MeshForm, Object, Surface};
 pub use scene::StageScene;
 pub use slide::{Pattern, Slide};
 
@@ -32,6 +32,26 @@ pub struct Stage {
     pub ambient: [f64; 3],
     /// What the display shows as white.
     pub exposure: Exposure,
+}
+
+impl Stage {
+    /// Whether all that a timeline can move is where it is in `other`: two instants of one scene for which this is true look the same.
+    pub fn same_staging(&self, other: &Self) -> bool {
+        self.camera == other.camera
+            && self.objects.len() == other.objects.len()
+            && self.objects.iter().zip(&other.objects).all(|(a, b)| a.pose == b.pose)
+            && self.lights.len() == other.lights.len()
+            && self.lights.iter().zip(&other.lights).all(|(a, b)| a.same_staging(b))
+    }
+
+    /// Triangles of all meshes, those that cast shadows alone too.
+    pub fn triangles(&self) -> usize {
+        let of = |object: &Object| match &object.form {
+            Form::Mesh(mesh) => mesh.seen.triangles.len() + mesh.caster.triangles.len(),
+            _ => 0,
+        };
+        self.objects.iter().map(of).sum()
+    }
 }
 
 /// Where something is and how it is turned.

@@ -58,11 +58,14 @@ impl Placed {
                     stage.camera.pose = Pose::looking(vector(), aim.at_m, aim.up);
                 }
                 Moved::ObjectPosition(k) => stage.objects[k].pose.position_m = vector(),
-                Moved::ObjectTurn(k) => stage.objects[k].pose.rotation = turned([value[0], value[1], value[2]]),
+                Moved::ObjectTurn(k) => {
+                    stage.objects[k].pose.rotation = turned([value[0], value[1], value[2]])
+                }
                 Moved::LightPosition(k) => stage.lights[k].move_to(vector(), self.light_aims[k]),
                 Moved::SlidePhase(k) => stage.lights[k].change(|slide| {
                     let mut pattern = slide.pattern.clone();
-                    if let Pattern::Sine { phase_deg, .. } | Pattern::Checker { phase_deg, .. } = &mut pattern {
+                    if let Pattern::Sine { phase_deg, .. } | Pattern::Checker { phase_deg, .. } = &mut pattern
+                    {
                         *phase_deg = [value[0], value[1]];
                     }
                     Slide::new(pattern, slide.orientation_deg, slide.edge)

@@ -95,6 +95,15 @@ impl Slide {
         [0.5 * spot * (1.0 + amplitude * wave); 3]
     }
 
+    /// Whether it is as it is in `other`, in all that a timeline can move.
+    pub(super) fn same_staging(&self, other: &Self) -> bool {
+        let phase = |slide: &Self| match slide.pattern {
+            Pattern::Sine { phase_deg, .. } | Pattern::Checker { phase_deg, .. } => phase_deg,
+            _ => [0.0; 2],
+        };
+        self.orientation_deg == other.orientation_deg && phase(self) == phase(other)
+    }
+
     fn amplitude(&self) -> f64 {
         match self.pattern {
             Pattern::Sine { amplitude, .. }

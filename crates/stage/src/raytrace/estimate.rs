@@ -33,6 +33,8 @@ pub(super) struct Estimator<'a> {
     bounced: Option<&'a Points>,
     /// Whether anything is estimated, or all is exact.
     sampled: bool,
+    /// Whether lamps and environments that are seen themselves count.
+    pub(super) shining: bool,
 }
 
 /// What a ray from the camera comes to.
@@ -64,7 +66,7 @@ impl<'a> Estimator<'a> {
         let sources: Vec<_> = world.stage.lights.iter().map(|light| Source::new(&light.kind)).collect();
         let soft = sources.iter().any(|source| matches!(source, Source::Soft(..)));
         let sampled = soft || bounced.is_some() || view.pixel == Pixel::Area;
-        Self { world, sources, view: *view, points, bounced, sampled }
+        Self { world, sources, view: *view, points, bounced, sampled, shining: true }
     }
 
     /// Whether there is an error to be told.
@@ -230,7 +232,7 @@ impl<'a> Estimator<'a> {
             [0, 1, 2].map(|c| {
                 let ambient = self.world.stage.ambient[c];
                 let sent = point.map_or(0.0, |point| point.albedo[c] * (sum[r][c] / PI + ambient));
-                shines[c] + through[c] * sent
+                through[c] * sent + if self.shining { shines[c] } else { 0.0 }
             })
         })
     }

@@ -27,12 +27,9 @@ pub(super) enum Source<'a> {
 impl<'a> Source<'a> {
     pub(super) fn new(kind: &'a LightKind) -> Self {
         match kind {
-            LightKind::Point { .. } | LightKind::Projector(_) => Self::Hard(kind),
-            LightKind::Directional { angular_radius_deg, .. } if *angular_radius_deg == 0.0 => {
-                Self::Hard(kind)
-            }
             LightKind::Environment(environment) => Self::Soft(kind, Some(Directions::new(environment))),
-            _ => Self::Soft(kind, None),
+            _ if kind.is_soft() => Self::Soft(kind, None),
+            _ => Self::Hard(kind),
         }
     }
 

@@ -17,6 +17,7 @@ mod world;
 
 use std::time::Instant;
 
+use kelir_frame::knobs::{self, Knob, Range};
 use kelir_frame::sobol::{Points, REPLICATES};
 use kelir_frame::{Frame, Isa, Meter, RenderError, Renderer, Stats, View};
 use kelir_scene::stage::Stage;
@@ -46,9 +47,43 @@ impl Default for Knobs {
     }
 }
 
+impl Knobs {
+    /// Errors: a knob out of its range.
+    pub fn check(&self) -> Result<(), RenderError> {
+        knobs::check(KNOBS, self)
+    }
+}
+
+/// What can be turned, for files, command line and tables.
+pub const KNOBS: &[Knob] = &[
+    Knob {
+        name: "spp",
+        unit: "samples a pixel",
+        range: Range::Whole(1, 1 << 20),
+        about: "samples a pixel and light where anything is estimated, rounded up to a multiple of 16 replicates",
+    },
+    knobs::SEED,
+    Knob {
+        name: "bounces",
+        unit: "",
+        range: Range::Whole(0, 1),
+        about: "how often light goes on from surface to surface",
+    },
+];
+
 /// The renderer for `knobs`.
 pub fn renderer(knobs: &Knobs) -> Box<dyn Renderer<Stage>> {
     Box::new(Raytrace { knobs: *knobs, solids: Solids::default(), meter: Meter::default() })
+}
+
+/// The radiance of surfaces alone, pixel by pixel: without what shines by itself. `samples` are rounded up to a multiple of 16.
+pub(crate) fn surfaces(stage: &Stage, view: &View, samples: usize) -> Vec<[f64; 3]> {
+    let mut solids = Solids::default();
+    let world = World::new(stage, &mut solids);
+    let points = Points::new(1, samples.div_ceil(REPLICATES));
+    let mut estimator = Estimator::new(&world, view, &points, None);
+    estimator.shining = false;
+    estimator.all(&Meter::default()).into_iter().flat_map(|band| band.radiance).collect()
 }
 
 /// Keeps meshes' trees between frames.
@@ -105,4 +140,4 @@ impl Renderer<Stage> for Raytrace {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -10,10 +10,12 @@ use crate::fields::length;
 pub(super) fn camera(node: &Node) -> Option<(Camera, Aim)> {
     let mut fields = node.table()?;
     let posed = looking(&mut fields, "the camera");
-    let angle = fields.given("field_of_view_deg", "perspective: the angle that the picture's height covers, degrees");
+    let angle =
+        fields.given("field_of_view_deg", "perspective: the angle that the picture's height covers, degrees");
     let width = fields.given("width_m", "orthographic: what the picture's width covers, metres");
     let intrinsics = fields.given("intrinsics", "perspective by a calibrated camera's numbers, in pixels");
-    let aspect = fields.given("aspect", "width over height of the picture; without it 16/9, or that of intrinsics");
+    let aspect =
+        fields.given("aspect", "width over height of the picture; without it 16/9, or that of intrinsics");
     if [&angle, &width, &intrinsics].iter().filter(|given| given.is_some()).count() != 1 {
         fields.done();
         return node.refuse("a camera has one of field_of_view_deg, width_m and intrinsics");
@@ -45,11 +47,15 @@ pub(super) fn camera(node: &Node) -> Option<(Camera, Aim)> {
 fn calibrated(node: &Node) -> Option<(Projection, f64)> {
     let mut fields = node.table()?;
     let pixels = |n: &Node| n.number_in(1e-3..=1e6, "a number of pixels, from 0.001 to 1e6");
-    let size = fields.need("size_px", "the picture's [width, height] in pixels", |n| n.items::<f64, 2>(pixels));
-    let focal = fields.need("focal_px", "the focal lengths [fx, fy] in pixels", |n| n.items::<f64, 2>(pixels));
-    let centre = fields.need("centre_px", "where the axis meets the picture, [cx, cy] from the top left, in pixels", |n| {
-        n.items::<f64, 2>(|x| x.number_in(-1e6..=1e6, "a place in pixels, from −1e6 to 1e6"))
-    });
+    let size =
+        fields.need("size_px", "the picture's [width, height] in pixels", |n| n.items::<f64, 2>(pixels));
+    let focal =
+        fields.need("focal_px", "the focal lengths [fx, fy] in pixels", |n| n.items::<f64, 2>(pixels));
+    let centre = fields.need(
+        "centre_px",
+        "where the axis meets the picture, [cx, cy] from the top left, in pixels",
+        |n| n.items::<f64, 2>(|x| x.number_in(-1e6..=1e6, "a place in pixels, from −1e6 to 1e6")),
+    );
     fields.done();
     let ([w, h], focal, centre) = (size?, focal?, centre?);
     if !(0.01..=100.0).contains(&(w / h)) {

@@ -23,7 +23,11 @@ enum Kind {
 
 /// Keys that belong to some kinds alone, and to which.
 const OWN: [(&str, &[Kind], &str); 15] = [
-    ("position_m", &[Kind::Point, Kind::Rectangle, Kind::Disk, Kind::Projector], "a point, rectangle, disk or projector"),
+    (
+        "position_m",
+        &[Kind::Point, Kind::Rectangle, Kind::Disk, Kind::Projector],
+        "a point, rectangle, disk or projector",
+    ),
     ("look_at_m", &[Kind::Rectangle, Kind::Disk, Kind::Projector], "a rectangle, disk or projector"),
     ("up", &[Kind::Rectangle, Kind::Disk, Kind::Projector], "a rectangle, disk or projector"),
     ("intensity", &[Kind::Point, Kind::Projector], "a point or projector"),
@@ -44,16 +48,20 @@ const OWN: [(&str, &[Kind], &str); 15] = [
 pub(super) fn light(node: &Node, name: &str, loader: &Loader) -> Option<(Light, Option<Aim>)> {
     let mut fields = node.table()?;
     let called = fields.need("name", "the light's name", called);
-    let kind = fields.need("kind", "\"point\", \"directional\", \"rectangle\", \"disk\", \"environment\" or \"projector\"", |n| {
-        n.choice(&[
-            ("point", Kind::Point),
-            ("directional", Kind::Directional),
-            ("rectangle", Kind::Rectangle),
-            ("disk", Kind::Disk),
-            ("environment", Kind::Environment),
-            ("projector", Kind::Projector),
-        ])
-    });
+    let kind = fields.need(
+        "kind",
+        "\"point\", \"directional\", \"rectangle\", \"disk\", \"environment\" or \"projector\"",
+        |n| {
+            n.choice(&[
+                ("point", Kind::Point),
+                ("directional", Kind::Directional),
+                ("rectangle", Kind::Rectangle),
+                ("disk", Kind::Disk),
+                ("environment", Kind::Environment),
+                ("projector", Kind::Projector),
+            ])
+        },
+    );
     for (key, kinds, owners) in OWN {
         match kind {
             Some(kind) if !kinds.contains(&kind) => fields.reject(key, &format!("belongs to {owners}")),
@@ -76,10 +84,12 @@ fn read(kind: Kind, fields: &mut Fields, name: &str, loader: &Loader) -> Option<
         }
         Kind::Directional => {
             let direction = fields.need("direction", "where the light goes, [x, y, z]", |n| {
-                let to: [f64; 3] = n.items(|x| x.number_in(-1e6..=1e6, "a direction's numbers are from −1e6 to 1e6"))?;
+                let to: [f64; 3] =
+                    n.items(|x| x.number_in(-1e6..=1e6, "a direction's numbers are from −1e6 to 1e6"))?;
                 DVec3::from(to).try_normalize().or_else(|| n.refuse("a direction has a length"))
             });
-            let irradiance = fields.need("irradiance", "W/m² on a plane that faces it, a number or [r, g, b]", radiance);
+            let irradiance =
+                fields.need("irradiance", "W/m² on a plane that faces it, a number or [r, g, b]", radiance);
             let angular_radius_deg = fields.optional(
                 "angular_radius_deg",
                 "degrees from its middle to its edge, as 0.27 of the sun; without it 0: shadows have edges",
@@ -102,7 +112,8 @@ fn read(kind: Kind, fields: &mut Fields, name: &str, loader: &Loader) -> Option<
                 let radius_m = fields.need("radius_m", "its radius in metres", length);
                 radius_m.map(|radius_m| AreaShape::Disk { radius_m })
             };
-            let radiance = fields.need("radiance", "W·m⁻²·sr⁻¹ to its front, a number or [r, g, b]", radiance);
+            let radiance =
+                fields.need("radiance", "W·m⁻²·sr⁻¹ to its front, a number or [r, g, b]", radiance);
             let (pose, aim) = posed?;
             Some((LightKind::Area { pose: facing(pose), shape: shape?, radiance: radiance? }, Some(aim)))
         }
@@ -110,25 +121,39 @@ fn read(kind: Kind, fields: &mut Fields, name: &str, loader: &Loader) -> Option<
             let image = fields.need("image", "an equirectangular picture of radiance, .exr or .hdr", |n| {
                 picture_light(n, name, loader)
             });
-            let scale = fields.optional("scale", "what its values are multiplied by, a number or [r, g, b]; without it 1", [1.0; 3], radiance);
+            let scale = fields.optional(
+                "scale",
+                "what its values are multiplied by, a number or [r, g, b]; without it 1",
+                [1.0; 3],
+                radiance,
+            );
             Some((LightKind::Environment(Environment { image: Arc::new(image?), scale: scale? }), None))
         }
         Kind::Projector => {
             let posed = pose::looking(fields, "the projector");
-            let throw_deg = fields.need("throw_deg", "the angle between opposite sides of its square, degrees", |n| {
-                n.number_in(0.1..=170.0, "a throw is from 0.1 to 170 degrees")
-            });
-            let intensity = fields.need("intensity", "W/sr where the slide is 1, a number or [r, g, b]", radiance);
+            let throw_deg =
+                fields.need("throw_deg", "the angle between opposite sides of its square, degrees", |n| {
+                    n.number_in(0.1..=170.0, "a throw is from 0.1 to 170 degrees")
+                });
+            let intensity =
+                fields.need("intensity", "W/sr where the slide is 1, a number or [r, g, b]", radiance);
             let falloff = fields.optional(
                 "falloff",
                 "\"square\": light falls off with the distance's square; \"none\": it does not, as in 2003; without it square",
                 true,
                 |n| n.choice(&[("square", true), ("none", false)]),
             );
-            let slide = fields.need("slide", "what it throws: the [stage.lights.slide] section", |n| slide(n, name, loader));
+            let slide = fields.need("slide", "what it throws: the [stage.lights.slide] section", |n| {
+                slide(n, name, loader)
+            });
             let (pose, aim) = posed?;
-            let projector =
-                Projector { pose, throw_deg: throw_deg?, intensity: intensity?, falloff: falloff?, slide: slide? };
+            let projector = Projector {
+                pose,
+                throw_deg: throw_deg?,
+                intensity: intensity?,
+                falloff: falloff?,
+                slide: slide?,
+            };
             Some((LightKind::Projector(Box::new(projector)), Some(aim)))
         }
     }
@@ -181,11 +206,17 @@ fn slide(node: &Node, name: &str, loader: &Loader) -> Option<Slide> {
         Some(Kind::Spot) => Some(Pattern::Spot),
         Some(kind @ (Kind::Sine | Kind::Checker)) => {
             let amplitude = amplitude();
-            let frequency = fields.need("frequency", "cycles a side, one number or [u, v]", |n| match n.as_number() {
-                Some(_) => frequency(n).map(|f| [f; 2]),
-                None => n.items(frequency),
-            });
-            let phase_deg = fields.optional("phase_deg", "degrees along u and v; without it [0, 0]", [0.0; 2], pose::angles);
+            let frequency =
+                fields.need("frequency", "cycles a side, one number or [u, v]", |n| match n.as_number() {
+                    Some(_) => frequency(n).map(|f| [f; 2]),
+                    None => n.items(frequency),
+                });
+            let phase_deg = fields.optional(
+                "phase_deg",
+                "degrees along u and v; without it [0, 0]",
+                [0.0; 2],
+                pose::angles,
+            );
             let (amplitude, frequency, phase_deg) = (amplitude?, frequency?, phase_deg?);
             Some(match kind {
                 Kind::Sine => Pattern::Sine { amplitude, frequency, phase_deg },
@@ -204,17 +235,26 @@ fn slide(node: &Node, name: &str, loader: &Loader) -> Option<Slide> {
             Some(Pattern::Noise { amplitude: amplitude?, band: band?, seed: seed? as u64 })
         }
         Some(Kind::Image) => fields
-            .need("image", "an opaque sRGB picture over the whole square", |n| crate::fields::albedo_image(n, name, loader))
+            .need("image", "an opaque sRGB picture over the whole square", |n| {
+                crate::fields::albedo_image(n, name, loader)
+            })
             .map(|image| Pattern::Image(Arc::new(image))),
     };
-    let orientation_deg =
-        fields.optional("orientation_deg", "turned about its middle, counter-clockwise as the projector sees it; without it 0", 0.0, pose::degrees);
+    let orientation_deg = fields.optional(
+        "orientation_deg",
+        "turned about its middle, counter-clockwise as the projector sees it; without it 0",
+        0.0,
+        pose::degrees,
+    );
     let edge = if kind == Some(Kind::Image) {
         Some(0.0)
     } else {
-        fields.optional("edge", "share of the half side over which the spot fades; without it 0.1", 0.1, |n| {
-            n.number_in(0.0..=1.0, "a share, from 0 to 1")
-        })
+        fields.optional(
+            "edge",
+            "share of the half side over which the spot fades; without it 0.1",
+            0.1,
+            |n| n.number_in(0.0..=1.0, "a share, from 0 to 1"),
+        )
     };
     fields.done();
     Some(Slide::new(pattern?, orientation_deg?, edge?))

@@ -23,9 +23,12 @@ fn smooth(fields: &mut Fields) -> Option<bool> {
 }
 
 pub(super) fn mesh(fields: &mut Fields, name: &str, loader: &Loader, made: &mut Made) -> Option<Form> {
-    let unit = fields.optional("unit", "what the file's numbers are in: \"m\", \"cm\", \"mm\" or \"in\"; without it m", Unit::Metre, |n| {
-        n.choice(&Unit::ALL.map(|unit| (unit.name(), unit)))
-    });
+    let unit = fields.optional(
+        "unit",
+        "what the file's numbers are in: \"m\", \"cm\", \"mm\" or \"in\"; without it m",
+        Unit::Metre,
+        |n| n.choice(&Unit::ALL.map(|unit| (unit.name(), unit))),
+    );
     let mended = fields.optional(
         "repair",
         "whether faults of the mesh are repaired where that needs no guess; without it they are refused",
@@ -35,7 +38,8 @@ pub(super) fn mesh(fields: &mut Fields, name: &str, loader: &Loader, made: &mut 
     let smooth = smooth(fields);
     let file = fields.need("file", "the mesh: .obj, .ply, .gltf or .glb", |n| Some(n.clone()))?;
     let level = fields.given("level", "so many triangles are seen: it is simplified to them; without it all");
-    let caster = fields.given("caster_level", "so many triangles cast the shadow on other things; without it what is seen");
+    let caster = fields
+        .given("caster_level", "so many triangles cast the shadow on other things; without it what is seen");
     let full = whole(&file, name, loader, unit?, mended?)?;
     let simplified = |node: &Option<Node>, else_: &Arc<Mesh>, made: &mut Made| match node {
         Some(node) => simplify(node, &full, made),
@@ -71,7 +75,11 @@ fn whole(file: &Node, name: &str, loader: &Loader, unit: Unit, mended: bool) -> 
     }
     let report = check(&mesh);
     if !report.is_drawable() || !report.is_manifold() {
-        let cure = if mended { "these can't be repaired without a guess" } else { "repair = true mends what needs no guess" };
+        let cure = if mended {
+            "these can't be repaired without a guess"
+        } else {
+            "repair = true mends what needs no guess"
+        };
         let faults = report.faults().join(", ");
         let faults = if faults.is_empty() { "no triangles".to_owned() } else { faults };
         return file.refuse(format!("{} has {faults}; {cure}", loader.label(&path)));
@@ -116,7 +124,8 @@ pub(super) fn cylinder(fields: &mut Fields) -> Option<Form> {
         })
     };
     // Lids have vertices of their own: their edge is sharp.
-    let mut positions: Vec<[f32; 3]> = ring(0.0).chain(ring(height)).chain(ring(0.0)).chain(ring(height)).collect();
+    let mut positions: Vec<[f32; 3]> =
+        ring(0.0).chain(ring(height)).chain(ring(0.0)).chain(ring(height)).collect();
     let outward = |k: u32| {
         let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(sides)).sin_cos();
         [cos as f32, 0.0, sin as f32]

@@ -20,7 +20,13 @@ use crate::theatre::Exposure;
 use crate::timeline::{self, Driven, ReadValue, Target, Timeline};
 
 /// The stage's part of a scene file: what `subject = "stage"` has beside its subject.
-pub(crate) fn stage(root: &Node, mut sections: Fields, label: &str, name: &str, loader: Loader) -> Option<StageScene> {
+pub(crate) fn stage(
+    root: &Node,
+    mut sections: Fields,
+    label: &str,
+    name: &str,
+    loader: Loader,
+) -> Option<StageScene> {
     let read = sections.need("stage", "the [stage] section", |node| section(node, name, &loader));
     let exposure = sections.optional(
         "exposure",
@@ -42,7 +48,14 @@ pub(crate) fn stage(root: &Node, mut sections: Fields, label: &str, name: &str, 
         return None;
     }
     let sha256 = crate::scene::hash(&root.canonical(), loader.files(), &made);
-    Some(StageScene { label: label.to_owned(), sha256, toml: root.to_toml(), placed, timeline, warnings: Vec::new() })
+    Some(StageScene {
+        label: label.to_owned(),
+        sha256,
+        toml: root.to_toml(),
+        placed,
+        timeline,
+        warnings: Vec::new(),
+    })
 }
 
 /// Hashes of what was made of files by arithmetic that other machines may round otherwise, by where it is.
@@ -98,7 +111,11 @@ fn called(node: &Node) -> Option<String> {
     let sound = !name.is_empty()
         && name.len() <= 64
         && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c));
-    if sound { Some(name.to_owned()) } else { node.refuse("a name has 1 to 64 ASCII letters, digits, _ or -") }
+    if sound {
+        Some(name.to_owned())
+    } else {
+        node.refuse("a name has 1 to 64 ASCII letters, digits, _ or -")
+    }
 }
 
 /// What a track's target names, and how its values are read.
@@ -115,25 +132,38 @@ fn target<'r>(node: &Node, placed: &'r Placed) -> Option<Driven<'r>> {
         Some((index.parse::<usize>().ok().filter(|i| *i < count), field))
     };
     if let Some((index, field)) = numbered("stage.objects", placed.still.objects.len()) {
-        let Some(i) = index else { return node.refuse(format!("the stage has {} objects", placed.still.objects.len())) };
+        let Some(i) = index else {
+            return node.refuse(format!("the stage has {} objects", placed.still.objects.len()));
+        };
         return match field {
             "position_m" => Some((Target::Stage(Moved::ObjectPosition(i)), point())),
-            "rotate_deg" => Some((Target::Stage(Moved::ObjectTurn(i)), Box::new(|n| pose::turn_deg(n).map(|t| t.to_vec())))),
+            "rotate_deg" => Some((
+                Target::Stage(Moved::ObjectTurn(i)),
+                Box::new(|n| pose::turn_deg(n).map(|t| t.to_vec())),
+            )),
             _ => node.refuse(known),
         };
     }
     if let Some((index, field)) = numbered("stage.lights", placed.still.lights.len()) {
-        let Some(i) = index else { return node.refuse(format!("the stage has {} lights", placed.still.lights.len())) };
-        let has = |what: bool, target, read| if what { Some((target, read)) } else { node.refuse("this light has no such value") };
+        let Some(i) = index else {
+            return node.refuse(format!("the stage has {} lights", placed.still.lights.len()));
+        };
+        let has = |what: bool, target, read| {
+            if what { Some((target, read)) } else { node.refuse("this light has no such value") }
+        };
         let light = &placed.still.lights[i];
         return match field {
             "position_m" => has(light.has_position(), Target::Stage(Moved::LightPosition(i)), point()),
-            "slide.phase_deg" => {
-                has(light.has_phase(), Target::Stage(Moved::SlidePhase(i)), Box::new(|n| pose::angles(n).map(|p| p.to_vec())))
-            }
-            "slide.orientation_deg" => {
-                has(light.has_slide(), Target::Stage(Moved::SlideTurn(i)), Box::new(|n| pose::degrees(n).map(|d| vec![d])))
-            }
+            "slide.phase_deg" => has(
+                light.has_phase(),
+                Target::Stage(Moved::SlidePhase(i)),
+                Box::new(|n| pose::angles(n).map(|p| p.to_vec())),
+            ),
+            "slide.orientation_deg" => has(
+                light.has_slide(),
+                Target::Stage(Moved::SlideTurn(i)),
+                Box::new(|n| pose::degrees(n).map(|d| vec![d])),
+            ),
             _ => node.refuse(known),
         };
     }

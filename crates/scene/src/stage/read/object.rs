@@ -27,7 +27,11 @@ const OWN: [(&str, &[Shape], &str); 12] = [
     ("caster_level", &[Shape::Mesh], "a mesh"),
     ("normals", &[Shape::Mesh, Shape::Cylinder], "a mesh or a cylinder"),
     ("scale", &[Shape::Mesh], "a mesh"),
-    ("radius_m", &[Shape::Sphere, Shape::Disk, Shape::Cone, Shape::Cylinder], "a sphere, disk, cone or cylinder"),
+    (
+        "radius_m",
+        &[Shape::Sphere, Shape::Disk, Shape::Cone, Shape::Cylinder],
+        "a sphere, disk, cone or cylinder",
+    ),
     ("height_m", &[Shape::Cone, Shape::Cylinder], "a cone or a cylinder"),
     ("segments", &[Shape::Cylinder], "a cylinder"),
     ("size_m", &[Shape::Rectangle], "a rectangle"),
@@ -35,20 +39,29 @@ const OWN: [(&str, &[Shape], &str); 12] = [
 ];
 
 /// An object, and its turn in degrees.
-pub(super) fn object(node: &Node, name: &str, loader: &Loader, made: &mut Made) -> Option<(Object, [f64; 3])> {
+pub(super) fn object(
+    node: &Node,
+    name: &str,
+    loader: &Loader,
+    made: &mut Made,
+) -> Option<(Object, [f64; 3])> {
     let mut fields = node.table()?;
     let called = fields.need("name", "the object's name", called);
-    let shape = fields.need("shape", "\"mesh\", \"sphere\", \"disk\", \"rectangle\", \"triangle\", \"cone\" or \"cylinder\"", |n| {
-        n.choice(&[
-            ("mesh", Shape::Mesh),
-            ("sphere", Shape::Sphere),
-            ("disk", Shape::Disk),
-            ("rectangle", Shape::Rectangle),
-            ("triangle", Shape::Triangle),
-            ("cone", Shape::Cone),
-            ("cylinder", Shape::Cylinder),
-        ])
-    });
+    let shape = fields.need(
+        "shape",
+        "\"mesh\", \"sphere\", \"disk\", \"rectangle\", \"triangle\", \"cone\" or \"cylinder\"",
+        |n| {
+            n.choice(&[
+                ("mesh", Shape::Mesh),
+                ("sphere", Shape::Sphere),
+                ("disk", Shape::Disk),
+                ("rectangle", Shape::Rectangle),
+                ("triangle", Shape::Triangle),
+                ("cone", Shape::Cone),
+                ("cylinder", Shape::Cylinder),
+            ])
+        },
+    );
     for (key, shapes, owners) in OWN {
         match shape {
             Some(shape) if !shapes.contains(&shape) => fields.reject(key, &format!("belongs to {owners}")),
@@ -58,14 +71,21 @@ pub(super) fn object(node: &Node, name: &str, loader: &Loader, made: &mut Made) 
     }
     let form = shape.and_then(|shape| form(shape, &mut fields, name, loader, made));
     let scale = match shape {
-        Some(Shape::Mesh) => fields.optional("scale", "by how much the mesh is enlarged; without it 1", 1.0, |n| {
-            n.number_in(1e-6..=1e6, "a scale is from 1e-6 to 1e6")
-        }),
+        Some(Shape::Mesh) => {
+            fields.optional("scale", "by how much the mesh is enlarged; without it 1", 1.0, |n| {
+                n.number_in(1e-6..=1e6, "a scale is from 1e-6 to 1e6")
+            })
+        }
         _ => Some(1.0),
     };
     let posed = pose::pose(&mut fields);
     let surface = surface(&mut fields, name, loader);
-    let casts = fields.optional("casts_shadow", "whether it stands in the light's way; without it true", true, Node::boolean);
+    let casts = fields.optional(
+        "casts_shadow",
+        "whether it stands in the light's way; without it true",
+        true,
+        Node::boolean,
+    );
     fields.done();
     let (mut pose, turn_deg) = posed?;
     pose.scale = scale?;
@@ -79,12 +99,16 @@ fn form(shape: Shape, fields: &mut Fields, name: &str, loader: &Loader, made: &m
         Shape::Sphere => {
             fields.need("radius_m", "its radius in metres", length).map(|radius_m| Form::Sphere { radius_m })
         }
-        Shape::Disk => fields.need("radius_m", "its radius in metres", length).map(|radius_m| Form::Disk { radius_m }),
+        Shape::Disk => {
+            fields.need("radius_m", "its radius in metres", length).map(|radius_m| Form::Disk { radius_m })
+        }
         Shape::Rectangle => fields
             .need("size_m", "its [width, height] in metres: it lies in its own z = 0", |n| n.items(length))
             .map(|size_m| Form::Rectangle { size_m }),
         Shape::Triangle => fields
-            .need("corners_m", "its three corners in metres, counter-clockwise seen from outside", |n| n.items(point))
+            .need("corners_m", "its three corners in metres, counter-clockwise seen from outside", |n| {
+                n.items(point)
+            })
             .map(|corners_m| Form::Triangle { corners_m }),
         Shape::Cone => {
             let radius_m = fields.need("radius_m", "the base's radius in metres", length);
@@ -95,9 +119,14 @@ fn form(shape: Shape, fields: &mut Fields, name: &str, loader: &Loader, made: &m
 }
 
 fn surface(fields: &mut Fields, name: &str, loader: &Loader) -> Option<Surface> {
-    let mirror = fields.given("mirror", "an ideal mirror: its share of the light sent back, a number or [r, g, b]; or an albedo");
-    let albedo = fields.given("albedo", "its share of the light sent back, a number or [r, g, b]; without it 0.8");
-    let texture = fields.given("texture", "a picture over a mesh's texture coordinates, which the albedo is multiplied by");
+    let mirror = fields.given(
+        "mirror",
+        "an ideal mirror: its share of the light sent back, a number or [r, g, b]; or an albedo",
+    );
+    let albedo =
+        fields.given("albedo", "its share of the light sent back, a number or [r, g, b]; without it 0.8");
+    let texture = fields
+        .given("texture", "a picture over a mesh's texture coordinates, which the albedo is multiplied by");
     if let Some(mirror) = &mirror {
         if let Some(other) = albedo.as_ref().or(texture.as_ref()) {
             return other.refuse("a mirror has no albedo and no texture");

@@ -34,8 +34,12 @@ fn quaternion(node: &Node) -> Option<DQuat> {
 
 /// A pose by `position_m`, and a turn by `rotate_deg` or `rotation`; and the turn in degrees.
 pub(super) fn pose(fields: &mut Fields) -> Option<(Pose, [f64; 3])> {
-    let position_m =
-        fields.optional("position_m", "where its origin is, [x, y, z] in metres; without it [0, 0, 0]", [0.0; 3], point);
+    let position_m = fields.optional(
+        "position_m",
+        "where its origin is, [x, y, z] in metres; without it [0, 0, 0]",
+        [0.0; 3],
+        point,
+    );
     let turn = fields.given(
         "rotate_deg",
         "turns about its z, then the stage's x, then its y, [x, y, z] in degrees; or a rotation; without either none",
@@ -56,12 +60,19 @@ pub(super) fn pose(fields: &mut Fields) -> Option<(Pose, [f64; 3])> {
 /// The pose of what stands at `position_m` and looks at `look_at_m`, and what it looks at.
 pub(super) fn looking(fields: &mut Fields, what: &str) -> Option<(Pose, Aim)> {
     let from = fields.need("position_m", &format!("where {what} is, [x, y, z] in metres"), point);
-    let at_node = fields.given("look_at_m", &format!("what {what} looks at, [x, y, z] in metres; without it the origin"));
+    let at_node = fields
+        .given("look_at_m", &format!("what {what} looks at, [x, y, z] in metres; without it the origin"));
     let at = at_node.as_ref().map_or(Some([0.0; 3]), point);
-    let up = fields.optional("up", "what is upwards for it, [x, y, z]; without it [0, 1, 0]", [0.0, 1.0, 0.0], |n| {
-        let up: [f64; 3] = n.items(|x| x.number_in(-1e6..=1e6, "a direction's numbers are from −1e6 to 1e6"))?;
-        if DVec3::from(up).length() > 1e-9 { Some(up) } else { n.refuse("a direction has a length") }
-    });
+    let up = fields.optional(
+        "up",
+        "what is upwards for it, [x, y, z]; without it [0, 1, 0]",
+        [0.0, 1.0, 0.0],
+        |n| {
+            let up: [f64; 3] =
+                n.items(|x| x.number_in(-1e6..=1e6, "a direction's numbers are from −1e6 to 1e6"))?;
+            if DVec3::from(up).length() > 1e-9 { Some(up) } else { n.refuse("a direction has a length") }
+        },
+    );
     let (from, at, up): (DVec3, DVec3, DVec3) = (from?.into(), at?.into(), up?.into());
     if from.distance(at) < limits::LENGTH_M {
         return at_node.as_ref().unwrap_or(fields.node()).refuse(format!("{what} looks at where it is"));

@@ -14,10 +14,10 @@ use kelir_scene::stage::*;
 
 use super::{Knobs, renderer};
 
-pub(super) const VIEW: View = View { size: [16, 16], pixel: Pixel::Centre, skip: true };
+pub(crate) const VIEW: View = View { size: [16, 16], pixel: Pixel::Centre, skip: true };
 
 /// A stage of these, seen from above: an orthographic camera, 1 m wide, over the origin; x to the right and −z upwards in the picture.
-pub(super) fn stage(objects: Vec<Object>, lights: Vec<LightKind>) -> Stage {
+pub(crate) fn stage(objects: Vec<Object>, lights: Vec<LightKind>) -> Stage {
     let pose = Pose {
         position_m: DVec3::new(0.0, 50.0, 0.0),
         rotation: DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2),
@@ -33,7 +33,7 @@ pub(super) fn stage(objects: Vec<Object>, lights: Vec<LightKind>) -> Stage {
     }
 }
 
-pub(super) fn object(name: &str, form: Form, position_m: DVec3) -> Object {
+pub(crate) fn object(name: &str, form: Form, position_m: DVec3) -> Object {
     Object {
         name: name.into(),
         form,
@@ -44,14 +44,14 @@ pub(super) fn object(name: &str, form: Form, position_m: DVec3) -> Object {
 }
 
 /// A white floor of 100 m.
-pub(super) fn floor() -> Object {
+pub(crate) fn floor() -> Object {
     let mut floor = object("floor", Form::Rectangle { size_m: [100.0; 2] }, DVec3::ZERO);
     floor.pose.rotation = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2);
     floor
 }
 
 /// What faces down from so high over the origin.
-pub(super) fn overhead(height_m: f64) -> Pose {
+pub(crate) fn overhead(height_m: f64) -> Pose {
     Pose {
         position_m: DVec3::new(0.0, height_m, 0.0),
         rotation: DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2),
@@ -59,16 +59,16 @@ pub(super) fn overhead(height_m: f64) -> Pose {
     }
 }
 
-pub(super) fn point(position: [f64; 3], intensity: f64) -> LightKind {
+pub(crate) fn point(position: [f64; 3], intensity: f64) -> LightKind {
     LightKind::Point { position_m: position.into(), intensity: [intensity; 3] }
 }
 
-pub(super) fn draw(stage: &Stage, view: View, knobs: Knobs) -> Frame {
+pub(crate) fn draw(stage: &Stage, view: View, knobs: Knobs) -> Frame {
     renderer(&knobs).radiance(stage, &view).expect("a picture")
 }
 
 /// The middle of a pixel of the picture from above, metres.
-pub(super) fn middle(view: View, pixel: usize, width_m: f64) -> DVec3 {
+pub(crate) fn middle(view: View, pixel: usize, width_m: f64) -> DVec3 {
     let [w, h] = view.size;
     let (i, j) = (pixel % w, pixel / w);
     let (w, h) = (w as f64, h as f64);
@@ -76,12 +76,12 @@ pub(super) fn middle(view: View, pixel: usize, width_m: f64) -> DVec3 {
 }
 
 /// Irradiance of a white floor.
-pub(super) fn irradiance(frame: &Frame, pixel: usize) -> f64 {
+pub(crate) fn irradiance(frame: &Frame, pixel: usize) -> f64 {
     std::f64::consts::PI * f64::from(frame.radiance[0][pixel])
 }
 
 /// How many of the pixels are within 2.13 standard errors (95% of a t of 15) of what they should be, as a share.
-pub(super) fn covered(frame: &Frame, right: impl Fn(usize) -> f64) -> f64 {
+pub(crate) fn covered(frame: &Frame, right: impl Fn(usize) -> f64) -> f64 {
     let se = &frame.standard_error.as_ref().expect("errors")[0];
     let n = frame.radiance[0].len();
     let within = |k: &usize| {
@@ -93,7 +93,7 @@ pub(super) fn covered(frame: &Frame, right: impl Fn(usize) -> f64) -> f64 {
 }
 
 /// What is right is covered as often as its interval says, and what is off by 2% is not.
-pub(super) fn assert_covers(frame: &Frame, right: impl Fn(usize) -> f64) {
+pub(crate) fn assert_covers(frame: &Frame, right: impl Fn(usize) -> f64) {
     let share = covered(frame, &right);
     assert!((0.9..=0.995).contains(&share), "covered {share}");
     let off = covered(frame, |k| 1.02 * right(k));
@@ -101,12 +101,12 @@ pub(super) fn assert_covers(frame: &Frame, right: impl Fn(usize) -> f64) {
 }
 
 /// A sphere of radius 1 of `n` rows and 2n columns of quadrilaterals, closed.
-pub(super) fn ball(n: u32) -> Mesh {
+pub(crate) fn ball(n: u32) -> Mesh {
     bumpy(n, 0.0)
 }
 
 /// The same with bumps so high.
-pub(super) fn bumpy(rows: u32, high: f64) -> Mesh {
+pub(crate) fn bumpy(rows: u32, high: f64) -> Mesh {
     let columns = 2 * rows;
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     let at = |j: u32, i: u32| {
@@ -140,7 +140,7 @@ pub(super) fn bumpy(rows: u32, high: f64) -> Mesh {
     Mesh::new(positions, triangles)
 }
 
-pub(super) fn mesh(mesh: Mesh, smooth: bool) -> Form {
+pub(crate) fn mesh(mesh: Mesh, smooth: bool) -> Form {
     let mesh = Arc::new(mesh);
     Form::Mesh(MeshForm { seen: mesh.clone(), caster: mesh, smooth })
 }

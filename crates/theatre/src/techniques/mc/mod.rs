@@ -15,9 +15,9 @@ use kelir_frame::{Backend, Frame, Meter, RenderError, Renderer, Stats, View, Vis
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
-use crate::knobs::{self, Knob, Range};
 use crate::trace::sobol::{Points, REPLICATES};
 use crate::trace::{Row, Tracer};
+use kelir_frame::knobs::{self, Knob, Range};
 
 #[cfg(feature = "gpu")]
 pub(crate) use twins::twins;

@@ -20,7 +20,7 @@ use kelir_frame::{RenderError, Renderer};
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
-use crate::knobs::{self, Knob, Range};
+use kelir_frame::knobs::{self, Knob, Range};
 
 pub use renderer::{BothModels, Oracle};
 pub use upright::Visibility;

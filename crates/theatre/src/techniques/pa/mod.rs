@@ -30,7 +30,7 @@ use kelir_frame::{Backend, RenderError, Renderer, VisibilityModel};
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
-use crate::knobs::{self, Knob, Range};
+use kelir_frame::knobs::{self, Knob, Range};
 
 #[cfg(feature = "gpu")]
 pub(crate) use gpu::twins;

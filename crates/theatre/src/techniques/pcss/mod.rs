@@ -33,8 +33,8 @@ use kelir_scene::{Ambient, EmitterShape, Theatre};
 use serde::{Deserialize, Serialize};
 
 use crate::emitters::{each_visibility, emitters};
-use crate::knobs::{self, Knob, Range};
 use crate::project::sides_m;
+use kelir_frame::knobs::{self, Knob, Range};
 
 use crate::albedo;
 use crate::irradiance::UnitImages;

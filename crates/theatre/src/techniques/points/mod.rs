@@ -10,9 +10,9 @@ use kelir_frame::{Backend, Frame, Meter, RenderError, Renderer, Stats, View, Vis
 use kelir_scene::Theatre;
 use serde::{Deserialize, Serialize};
 
-use crate::knobs::{self, Knob, Range};
 use crate::trace::Tracer;
 use crate::trace::sobol::{Points, REPLICATES};
+use kelir_frame::knobs::{self, Knob, Range};
 
 #[cfg(feature = "gpu")]
 mod twins;

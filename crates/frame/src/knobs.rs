@@ -3,10 +3,11 @@
 use std::fmt;
 use std::ops::{Bound, RangeBounds};
 
-use kelir_frame::RenderError;
 use kelir_reader::list;
 use serde::Serialize;
 use serde_json::Value;
+
+use crate::RenderError;
 
 /// What can be turned.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +30,7 @@ impl Knob {
 }
 
 /// Of techniques with shadow maps.
-pub(crate) const MAP_SIZE: Knob = Knob {
+pub const MAP_SIZE: Knob = Knob {
     name: "map_size",
     unit: "samples",
     range: Range::Whole(16, 8192),
@@ -37,7 +38,7 @@ pub(crate) const MAP_SIZE: Knob = Knob {
 };
 
 /// Of techniques that sample.
-pub(crate) const SEED: Knob = Knob {
+pub const SEED: Knob = Knob {
     name: "seed",
     unit: "",
     range: Range::Whole(0, u64::MAX),
@@ -104,7 +105,7 @@ impl fmt::Display for Range {
 ///
 /// # Errors
 /// [`RenderError::Knob`]: every knob that is out of its range, with its value and its rule.
-pub(crate) fn check(knobs: &[Knob], stand: &impl Serialize) -> Result<(), RenderError> {
+pub fn check(knobs: &[Knob], stand: &impl Serialize) -> Result<(), RenderError> {
     let stand = serde_json::to_value(stand).unwrap_or_default();
     told(stand.as_object().into_iter().flatten().filter_map(|(name, value)| {
         let knob = knobs.iter().find(|knob| knob.name == name)?;
