@@ -28,8 +28,6 @@ pub(crate) struct Aim {
 pub(crate) struct Placed {
     pub still: Stage,
     pub camera_aim: Aim,
-    /// Of each object, degrees.
-    pub turns: Vec<[f64; 3]>,
     /// Of each light that looks at something.
     pub light_aims: Vec<Option<Aim>>,
 }

@@ -18,5 +18,6 @@ mod posed;
 mod refused;
 mod resampled;
 mod shipped;
+mod stage;
 mod support;
 mod threads;

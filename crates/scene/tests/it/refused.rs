@@ -72,13 +72,9 @@ fn refused_once(edits: &[(&str, &str)], files: &Files, wanted: &str) {
 /// What there is no drawing for is refused by name, whatever sections it has; a theatre may say that it is one.
 #[test]
 fn another_subject_cannot_be_drawn_yet() {
-    for (subject, what) in [("stage", "a stage of meshes"), ("plate", "a photographed shadow")] {
-        let found = messages(&format!("subject = \"{subject}\"\n[meshes]\nfile = \"a.glb\"\n"));
-        let wanted = format!(
-            "scenes/test.toml:1:11: subject = \"{subject}\": {what} can't be drawn yet, only a \"theatre\""
-        );
-        assert_eq!(found, [wanted]);
-    }
+    let found = messages("subject = \"plate\"\n[photograph]\nfile = \"a.png\"\n");
+    let what = "a photographed shadow can't be drawn yet, only a \"theatre\" or a \"stage\"";
+    assert_eq!(found, [format!("scenes/test.toml:1:11: subject = \"plate\": {what}")]);
     assert!(parse(&format!("subject = \"theatre\"\n{SCENE}"), &files()).is_ok());
 }
 

@@ -91,7 +91,8 @@ impl Rays {
     }
 }
 
-fn split(vectors: &[DVec3; LANES]) -> [Lanes; 3] {
+/// x, y and z of vectors.
+pub(super) fn split(vectors: &[DVec3; LANES]) -> [Lanes; 3] {
     [vectors.map(|v| v.x), vectors.map(|v| v.y), vectors.map(|v| v.z)]
 }
 

@@ -13,7 +13,7 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 
-use super::rays::{Hits, LANES, Lanes, NOTHING, Origin, Rays};
+use super::rays::{Hits, LANES, Lanes, NOTHING, Origin, Rays, split};
 
 /// Triangles as rays look them up.
 pub struct Tree {
@@ -184,13 +184,9 @@ impl<'a, const ONE: bool, const ANY: bool> Walk<'a, ONE, ANY> {
         let mut origin = [[0f64; LANES]; 3];
         let mut reach = here.abs().max_element();
         if !ONE {
-            for r in 0..LANES {
-                let from = rays.origin(r) - here;
-                reach = reach.max(from.abs().max_element());
-                for k in 0..3 {
-                    origin[k][r] = from[k];
-                }
-            }
+            let from: [DVec3; LANES] = std::array::from_fn(|r| rays.origin(r) - here);
+            reach = from.iter().fold(reach, |reach, from| reach.max(from.abs().max_element()));
+            origin = split(&from);
         }
         if let Some([low, high]) = tree.bounds() {
             reach = reach.max(f64::from(low.abs().max(high.abs()).max_element()));

@@ -69,7 +69,7 @@ fn section(node: &Node, name: &str, loader: &Loader) -> Option<(Placed, Made)> {
         let items = n.array(limits::OBJECTS)?;
         let read: Vec<_> = items.iter().map(|item| object::object(item, name, loader, &mut made)).collect();
         let objects: Vec<_> = read.into_iter().collect::<Option<_>>()?;
-        unique(&items, objects.iter().map(|(object, _)| object.name.as_str()), "an object").then_some(objects)
+        unique(&items, objects.iter().map(|object| object.name.as_str()), "an object").then_some(objects)
     });
     let lights = fields.optional("lights", "what shines, one table each", Vec::new(), |n| {
         let items = n.array(limits::LIGHTS)?;
@@ -85,10 +85,9 @@ fn section(node: &Node, name: &str, loader: &Loader) -> Option<(Placed, Made)> {
     );
     fields.done();
     let ((camera, camera_aim), objects, lights) = (camera?, objects?, lights?);
-    let (objects, turns) = objects.into_iter().unzip();
     let (lights, light_aims) = lights.into_iter().unzip();
     let still = Stage { camera, objects, lights, ambient: ambient?, exposure: Exposure::Auto };
-    Some((Placed { still, camera_aim, turns, light_aims }, made))
+    Some((Placed { still, camera_aim, light_aims }, made))
 }
 
 /// Whether all names differ; the second of two alike is refused.

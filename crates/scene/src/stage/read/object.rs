@@ -38,13 +38,7 @@ const OWN: [(&str, &[Shape], &str); 12] = [
     ("corners_m", &[Shape::Triangle], "a triangle"),
 ];
 
-/// An object, and its turn in degrees.
-pub(super) fn object(
-    node: &Node,
-    name: &str,
-    loader: &Loader,
-    made: &mut Made,
-) -> Option<(Object, [f64; 3])> {
+pub(super) fn object(node: &Node, name: &str, loader: &Loader, made: &mut Made) -> Option<Object> {
     let mut fields = node.table()?;
     let called = fields.need("name", "the object's name", called);
     let shape = fields.need(
@@ -87,9 +81,9 @@ pub(super) fn object(
         Node::boolean,
     );
     fields.done();
-    let (mut pose, turn_deg) = posed?;
+    let mut pose = posed?;
     pose.scale = scale?;
-    Some((Object { name: called?, form: form?, pose, surface: surface?, casts: casts? }, turn_deg))
+    Some(Object { name: called?, form: form?, pose, surface: surface?, casts: casts? })
 }
 
 fn form(shape: Shape, fields: &mut Fields, name: &str, loader: &Loader, made: &mut Made) -> Option<Form> {

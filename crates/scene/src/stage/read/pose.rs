@@ -32,8 +32,8 @@ fn quaternion(node: &Node) -> Option<DQuat> {
     }
 }
 
-/// A pose by `position_m`, and a turn by `rotate_deg` or `rotation`; and the turn in degrees.
-pub(super) fn pose(fields: &mut Fields) -> Option<(Pose, [f64; 3])> {
+/// A pose by `position_m`, and a turn by `rotate_deg` or `rotation`.
+pub(super) fn pose(fields: &mut Fields) -> Option<Pose> {
     let position_m = fields.optional(
         "position_m",
         "where its origin is, [x, y, z] in metres; without it [0, 0, 0]",
@@ -54,7 +54,7 @@ pub(super) fn pose(fields: &mut Fields) -> Option<(Pose, [f64; 3])> {
         Some(node) => quaternion(node)?,
         None => turned(turn_deg),
     };
-    Some((Pose { position_m: position_m?.into(), rotation, scale: 1.0 }, turn_deg))
+    Some(Pose { position_m: position_m?.into(), rotation, scale: 1.0 })
 }
 
 /// The pose of what stands at `position_m` and looks at `look_at_m`, and what it looks at.

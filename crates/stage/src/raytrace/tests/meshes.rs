@@ -90,7 +90,7 @@ fn nothing_escapes_from_a_closed_mesh() {
             let mut random = Random(n * 7919 + salt);
             let origin = 0.3 * random.vector();
             let origins: [DVec3; LANES] = std::array::from_fn(|_| 0.3 * random.vector());
-            let one = n % 2 == 0;
+            let one = n.is_multiple_of(2);
             let directions: [DVec3; LANES] = std::array::from_fn(|r| {
                 let from = if one { origin } else { origins[r] };
                 let [a, b, _] = shape.triangles[(n as usize * LANES + r) % shape.triangles.len()];
