@@ -1,7 +1,7 @@
 //! Where study files, scenes and pictures are read from: the data folder first, then what is built in.
 
 use crate::remembered::{Known, Remembered, SceneFacts};
-use kelir_scene::{Assets, Scene};
+use kelir_scene::{AnyScene, Assets};
 use kelir_store::sha256_hex;
 use kelir_study::Problem;
 use rust_embed::RustEmbed;
@@ -121,16 +121,16 @@ impl Library {
     ///
     /// # Errors
     /// Everything that is wrong with it.
-    pub fn scene(&self, path: &str) -> Result<Scene, Vec<Problem>> {
+    pub fn scene(&self, path: &str) -> Result<AnyScene, Vec<Problem>> {
         self.scene_by(path, self)
     }
 
-    fn scene_by(&self, path: &str, files: &dyn Assets) -> Result<Scene, Vec<Problem>> {
+    fn scene_by(&self, path: &str, files: &dyn Assets) -> Result<AnyScene, Vec<Problem>> {
         let whole = |rule: String| vec![Problem::new(path, "scene", None, rule)];
         let bytes = files.read(path).map_err(|error| whole(error.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|_| whole("is no UTF-8 text".to_owned()))?;
         let path = normalise(path).ok_or_else(|| whole("leads out of the study's folders".to_owned()))?;
-        Scene::parse(&path, &text, files).map_err(Vec::from)
+        AnyScene::parse(&path, &text, files).map_err(Vec::from)
     }
 }
 

@@ -3,9 +3,10 @@
 use crate::library::Library;
 use crate::task::{Made, Maker, Task};
 use kelir_render::camera::Camera;
-use kelir_render::job::{Drawing, Job, Output, run};
+use kelir_render::job::{Drawing, Job, Output, Progress, run};
+use kelir_render::subject::{Staged, Subject};
 use kelir_render::{Backend, Pixel, RenderError, Technique, View};
-use kelir_scene::Scene;
+use kelir_scene::AnyScene;
 use kelir_study::{Condition, Kind, Problem};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -64,9 +65,11 @@ impl Maker for RenderMaker {
         if scene.sha256() != library.scene_facts(&job.scene).map_err(lines)?.sha256 {
             return Err(format!("{}: was changed after the study was checked; start again", job.scene));
         }
-        let stimulus = run(&mut job.with_scene(scene), &mut |step| {
-            progress(step.done as f64 / step.total.max(1) as f64, step.what);
-        })
+        let mut progress = |step: Progress| progress(step.done as f64 / step.total.max(1) as f64, step.what);
+        let stimulus = match scene {
+            AnyScene::Theatre(scene) => run(&mut job.with_scene(scene), &mut progress),
+            AnyScene::Stage(scene) => run(&mut job.with_scene(scene), &mut progress),
+        }
         .map_err(|error| error.to_string())?;
         let mut provenance = serde_json::to_value(&stimulus.provenance).map_err(|error| error.to_string())?;
         provenance["source"] = "rendered".into();
@@ -82,11 +85,23 @@ impl Maker for RenderMaker {
 
 /// Tries a task in a small size, by the path that makes it; the scene comes back for the next. Of a study's further sizes the view alone is
 /// tried: what is drawn is small at each.
-pub(crate) fn rehearse(task: &Task<'_>, scene: Scene) -> (Scene, Result<(), RenderError>) {
+pub(crate) fn rehearse(task: &Task<'_>, scene: AnyScene) -> (AnyScene, Result<(), RenderError>) {
+    match scene {
+        AnyScene::Theatre(scene) => {
+            let (scene, drawn) = rehearse_one(task, scene);
+            (AnyScene::Theatre(scene), drawn)
+        }
+        AnyScene::Stage(scene) => {
+            let (scene, drawn) = rehearse_one(task, scene);
+            (AnyScene::Stage(scene), drawn)
+        }
+    }
+}
+
+fn rehearse_one<S: Staged>(task: &Task<'_>, scene: S) -> (S, Result<(), RenderError>) {
     match job(task) {
         Ok(job) if task.rank > 0 => {
-            let screen = scene.still().screen;
-            let possible = job.view.check([screen.width_m, screen.height_m]);
+            let possible = job.view.check(scene.still().sides_m());
             (scene, possible)
         }
         Ok(job) => kelir_render::job::rehearse(job.with_scene(scene)),
@@ -102,7 +117,20 @@ type Sample = (usize, Vec<Vec<u8>>);
 const PLACES: [f64; 3] = [0.11, 0.37, 0.71];
 
 /// How many pictures a task has, and its picture as it will be made; of a film pairs that follow each other. The scene comes back for the next.
-pub(crate) fn sample(task: &Task<'_>, scene: Scene) -> (Scene, Result<Sample, String>) {
+pub(crate) fn sample(task: &Task<'_>, scene: AnyScene) -> (AnyScene, Result<Sample, String>) {
+    match scene {
+        AnyScene::Theatre(scene) => {
+            let (scene, sampled) = sample_one(task, scene);
+            (AnyScene::Theatre(scene), sampled)
+        }
+        AnyScene::Stage(scene) => {
+            let (scene, sampled) = sample_one(task, scene);
+            (AnyScene::Stage(scene), sampled)
+        }
+    }
+}
+
+fn sample_one<S: Staged>(task: &Task<'_>, scene: S) -> (S, Result<Sample, String>) {
     let mut job = match job(task) {
         Ok(job) => job.with_scene(scene),
         Err(rule) => return (scene, Err(rule)),
@@ -121,7 +149,7 @@ pub(crate) fn sample(task: &Task<'_>, scene: Scene) -> (Scene, Result<Sample, St
     (job.scene, drawn.map(|pictures| (frames, pictures)))
 }
 
-fn files(job: &mut Job, indices: &[usize]) -> Result<Vec<Vec<u8>>, RenderError> {
+fn files<S: Staged>(job: &mut Job<S>, indices: &[usize]) -> Result<Vec<Vec<u8>>, RenderError> {
     let mut drawing = Drawing::open(job)?;
     let mut pictures = Vec::with_capacity(indices.len());
     for index in indices {

@@ -4,7 +4,7 @@
 use crate::library::{Library, beside};
 use crate::render;
 use crate::task::{Task, tasks};
-use kelir_scene::Scene;
+use kelir_scene::AnyScene;
 use kelir_store::{PackedSize, Store, StoreError, packed_bytes, step_bytes};
 use kelir_study::{Condition, Kind, StudyDefinition};
 use serde::Serialize;
@@ -155,7 +155,7 @@ fn of_drawn(
     library: &Library,
     file: &str,
     task: &Task<'_>,
-    scenes: &mut BTreeMap<String, Scene>,
+    scenes: &mut BTreeMap<String, AnyScene>,
 ) -> Result<Vec<Weighed>, String> {
     let path = beside(file, task.pair.scene.as_deref().ok_or("has no scene")?);
     let scene = match scenes.remove(&path) {

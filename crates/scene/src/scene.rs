@@ -76,6 +76,22 @@ impl AnyScene {
         }
     }
 
+    /// SHA-256, in hexadecimal, over its values and files.
+    pub fn sha256(&self) -> &str {
+        match self {
+            Self::Theatre(scene) => scene.sha256(),
+            Self::Stage(scene) => scene.sha256(),
+        }
+    }
+
+    /// How it moves, if it does.
+    pub fn timeline(&self) -> Option<&Timeline> {
+        match self {
+            Self::Theatre(scene) => scene.timeline(),
+            Self::Stage(scene) => scene.timeline(),
+        }
+    }
+
     fn theatre(self, label: &str) -> Result<Scene, Problems> {
         match self {
             Self::Theatre(scene) => Ok(scene),

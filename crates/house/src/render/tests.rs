@@ -56,7 +56,9 @@ fn the_key_is_the_jobs() {
         .iter()
         .map(|task| {
             let key = sha256_hex(RenderMaker::default().identity(task, &library).unwrap().as_bytes());
-            let read = library.scene("scenes/lamp.toml").unwrap();
+            let AnyScene::Theatre(read) = library.scene("scenes/lamp.toml").unwrap() else {
+                panic!("a theatre")
+            };
             assert_eq!(key, job(task).unwrap().with_scene(read).key().unwrap());
             key
         })
@@ -133,4 +135,70 @@ fn a_camera_sees_alike_at_each_size() {
     let (_folder, library) = self::library(&wide);
     let said = library.study("studies/s.toml").unwrap_err().to_string();
     assert!(said.contains("conditions.pa.camera") && said.contains("defocus_px = 150"), "{said}");
+}
+
+/// A study may show a stage: checked, keyed, tried in a small size and made by the same functions.
+#[test]
+fn a_stage_is_made_as_a_theatre_is() {
+    const STAGE: &str = r#"
+subject = "stage"
+[stage.camera]
+position_m = [0, 1, 3]
+look_at_m = [0, 0.3, 0]
+field_of_view_deg = 40
+[[stage.objects]]
+name = "ground"
+shape = "rectangle"
+size_m = [4, 4]
+rotate_deg = [-90, 0, 0]
+[[stage.objects]]
+name = "ball"
+shape = "sphere"
+radius_m = 0.4
+position_m = [0, 0.4, 0]
+[[stage.lights]]
+name = "lamp"
+kind = "rectangle"
+position_m = [1, 2, 1]
+size_m = [0.5, 0.5]
+radiance = 5
+"#;
+    let study = |one: &str, other: &str| {
+        let items = fixtures::items(["a"], "../scenes/lamp.toml");
+        let block = fixtures::block(
+            "stills",
+            &[
+                ("kind", "\"still\""),
+                ("conditions", "[\"one\", \"other\"]"),
+                ("target", "\"one\""),
+                ("items", &items),
+            ],
+        );
+        let conditions = format!("{{ one = {{ {one} }}, other = {{ {other} }} }}");
+        fixtures::study(&[("conditions", &conditions)], [block])
+    };
+    let written = |study: &str| {
+        let (folder, library) = library(study);
+        std::fs::write(folder.path().join("scenes/lamp.toml"), STAGE).unwrap();
+        (folder, library)
+    };
+    let few = r#"technique = "raytrace", spp = 16"#;
+    let (_folder, library) = written(&study(few, r#"technique = "pa""#));
+    let refused = library.rehearsed("studies/s.toml").unwrap_err().to_string();
+    assert!(refused.contains("it shows a stage, which raytrace alone draws"), "{refused}");
+
+    let (_folder, library) = written(&study(few, r#"technique = "raytrace", spp = 32"#));
+    let study = library.rehearsed("studies/s.toml").unwrap();
+    let maker = RenderMaker::default();
+    let made: Vec<(String, Made)> = tasks(&study)
+        .iter()
+        .map(|task| {
+            let key = sha256_hex(maker.identity(task, &library).unwrap().as_bytes());
+            (key, maker.make(task, &library, &mut |_, _| ()).unwrap())
+        })
+        .collect();
+    let [(one, first), (other, second)] = &made[..] else { panic!("two pictures") };
+    assert!(one != other && first.bytes != second.bytes);
+    assert_eq!((&first.provenance["technique"], &first.provenance["spp"]), (&json!("raytrace"), &json!(16)));
+    assert!(first.provenance["standard_error"]["max"].as_f64().unwrap() > 0.0);
 }
