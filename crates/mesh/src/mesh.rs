@@ -137,6 +137,11 @@ impl Mesh {
     }
 }
 
+/// SHA-256 of bytes, in hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    hex::encode(Sha256::digest(bytes))
+}
+
 /// In f64, where sums and products of coordinates are all but exact.
 pub(crate) fn vector(position: [f32; 3]) -> DVec3 {
     DVec3::from_array(position.map(f64::from))
