@@ -394,6 +394,17 @@ mod tests {
     }
 
     #[test]
+    fn extreme_sizes_are_simplified_alike() {
+        let plain = levels(&ball(1.0, 12), &[100], Attributes::Normals).unwrap().remove(0);
+        for size in [1e-30, 1e30] {
+            let level = levels(&ball(size, 12), &[100], Attributes::Normals).unwrap().remove(0);
+            assert_eq!((level.mesh.triangles.len(), level.missed), (100, None), "{size}");
+            let ratio = level.mesh.area() / plain.mesh.area() / (size * size);
+            assert!((ratio - 1.0).abs() < 1e-3, "{size}: {ratio}");
+        }
+    }
+
+    #[test]
     fn texture_coordinates_go_along() {
         // A sheet whose texture is its place.
         let n = 20u32;

@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 /// A surface of triangles that share vertices.
 ///
-/// Anyone may put anything in: what is computed of a triangle whose indices are out of range leaves it out, and [`crate::check`] counts it.
+/// Anyone may put anything in: what is computed of a triangle whose indices are out of range leaves it out, and [`check()`](crate::check()) counts it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Vertices, metres: right-handed, y up.

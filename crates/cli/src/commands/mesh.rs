@@ -228,7 +228,15 @@ fn import(source: &Source, repair: bool, output: &Path) -> Result<()> {
 fn open(path: &Path, unit: Unit) -> Result<Model, Problem> {
     let shown = path.display().to_string();
     if let Some(made) = Made::of(&shown).filter(|_| !path.exists()) {
-        return Ok(made.make());
+        return match unit {
+            Unit::Metre => Ok(made.make()),
+            _ => Err(Problem::new(
+                shown,
+                "unit",
+                Some(unit.name().to_owned()),
+                "a model that ships is in metres",
+            )),
+        };
     }
     let whole = |rule: String| Problem::new(&shown, "", None, rule);
     let Some(format) = Format::of(&path.to_string_lossy()) else {

@@ -38,7 +38,7 @@ fn radius(y: f64) -> f64 {
         (high.1 - low.1) / (high.0 - low.0)
     };
     let h = y1 - y0;
-    let t = ((y - y0) / h).max(0.0).min(1.0);
+    let t = ((y - y0) / h).clamp(0.0, 1.0);
     let (a, b) = (t * t * (3.0 - 2.0 * t), h * t * (1.0 - t));
     r0 + (r1 - r0) * a + b * ((1.0 - t) * slope(k) - t * slope(k + 1))
 }

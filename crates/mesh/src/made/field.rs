@@ -175,7 +175,7 @@ pub(super) fn cosine_of_multiple(n: u32, cosine: f64) -> f64 {
 
 /// From 0 at `from` to 1 at `to`, smooth.
 pub(super) fn step(from: f64, to: f64, x: f64) -> f64 {
-    let t = ((x - from) / (to - from)).max(0.0).min(1.0);
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 

@@ -120,7 +120,7 @@ mod tests {
         (Made::Hare, 68_960, 1, 2, "2b25d0e7b025184eb86ebfac03a8922910d1723f303a24767312aec5badac597"),
         // Two handles.
         (Made::Amphora, 68_980, 1, -2, "342236fcabd256f231c0159b780d3b2abe26017c98cb1212c3536fd0f0f651a4"),
-        (Made::Horse, 69_992, 5, 10, "1310e959afcabc72e1c389f626c1bbe6eeb1ea9f4005ed74ff2a137136adafd0"),
+        (Made::Horse, 70_004, 5, 10, "424aebf652c412bd550e76f7346cc424825bd0a750a86cf5e018ea8f4ce295cd"),
     ];
 
     #[test]

@@ -49,7 +49,7 @@ impl Lattice {
     /// Where the field is 0 between two places; away from both, so that no two such points fall together.
     fn cut(&self, low: [i32; 3], high: [i32; 3]) -> DVec3 {
         let (f, g) = (self.value(low), self.value(high));
-        let share = (f / (f - g)).max(0.05).min(0.95);
+        let share = (f / (f - g)).clamp(0.05, 0.95);
         self.place(low) + (self.place(high) - self.place(low)) * share
     }
 }
