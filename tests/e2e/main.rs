@@ -12,6 +12,7 @@ mod invariants;
 mod kinds;
 mod late;
 mod licences;
+mod mesh;
 mod outputs;
 mod report;
 mod soak;

@@ -38,6 +38,11 @@ fn an_output_that_cannot_be_written_is_told_before_the_work() {
         let accuracy = [&accuracy[..], &["--only", "PCSS", "--json", good, "--plot", name]].concat();
         refused(&accuracy, &file, folder.path());
         refused(&["power", "--design", "shadow-puppets", "--json", name], &file, folder.path());
+        let glb = file.with_extension("glb");
+        if file.parent().is_some_and(|parent| parent.is_file()) {
+            refused(&["mesh", "import", "nothing.obj", "-o", glb.to_str().unwrap()], &glb, folder.path());
+            refused(&["mesh", "lod", "nothing.obj", "--triangles", "4", "-o", name], &file, folder.path());
+        }
     }
     // What these read is missing too: the output is looked at first.
     for ending in ["html", "md", "csv", "xlsx"] {

@@ -10,9 +10,7 @@ use anyhow::{Result, bail};
 pub(crate) enum Need {
     /// Node.js 20 or newer with npm: builds the web bundle.
     Node,
-    /// A C compiler: SQLite and libwebp are built from source.
-    Cc,
-    /// A C++ compiler: the H.264 encoder of `kelir animate -o FILE.mp4` is built from source.
+    /// A C and a C++ compiler: SQLite and libwebp, meshoptimizer and the H.264 encoder of `kelir animate -o FILE.mp4` are built from source.
     Cxx,
     /// A Vulkan driver: the wgpu backend (Mesa's software driver will do).
     Vulkan,
@@ -20,19 +18,21 @@ pub(crate) enum Need {
     Chromium,
     /// The sqlite3 shell: the tests read the database with a program that is not ours.
     Sqlite,
+    /// A scanned mesh that the tests simplify: the bunny that Debian has for its benchmark of OpenGL.
+    Bunny,
 }
 
 impl Need {
     fn present(self) -> bool {
         match self {
             Self::Node => node_major().is_some_and(|major| major >= 20) && on_path("npm"),
-            Self::Cc => on_path("cc"),
-            Self::Cxx => on_path("c++"),
+            Self::Cxx => on_path("cc") && on_path("c++"),
             Self::Vulkan => ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"]
                 .iter()
                 .any(|dir| Path::new(dir).read_dir().is_ok_and(|mut files| files.next().is_some())),
             Self::Chromium => Path::new("/usr/bin/chromium").exists(),
             Self::Sqlite => on_path("sqlite3"),
+            Self::Bunny => Path::new("/usr/share/glmark2/models/bunny.obj").exists(),
         }
     }
 
@@ -40,40 +40,46 @@ impl Need {
     fn packages(self) -> &'static [&'static str] {
         match self {
             Self::Node => &[],
-            Self::Cc => &["gcc", "libc6-dev"],
             Self::Cxx => &["g++"],
             Self::Vulkan => &["mesa-vulkan-drivers", "libvulkan1"],
             // Without recommended packages Chromium comes without a font, and a page without text.
             Self::Chromium => &["chromium", "fonts-dejavu-core"],
             Self::Sqlite => &["sqlite3"],
+            Self::Bunny => &["glmark2-data"],
         }
     }
 
     fn why(self) -> &'static str {
         match self {
             Self::Node => "Node.js 20 or newer with npm builds the web pages",
-            Self::Cc => "SQLite and libwebp are built with a C compiler, cc",
-            Self::Cxx => "the H.264 encoder is built with a C++ compiler, c++",
+            Self::Cxx => "SQLite and meshoptimizer are built with a C and a C++ compiler, cc and c++",
             Self::Vulkan => "the GPU backend needs a Vulkan driver (Mesa's software driver will do)",
             Self::Chromium => "the end-to-end tests click through the pages in Chromium at /usr/bin/chromium",
             Self::Sqlite => "the end-to-end tests read the database with the sqlite3 shell",
+            Self::Bunny => {
+                "one test simplifies a scanned mesh, Debian's glmark2-data, and is skipped without it"
+            }
         }
     }
 
     fn by_hand(self) -> &'static str {
         match self {
             Self::Node => "install Node.js 20 or newer from your distribution or https://nodejs.org",
-            Self::Cc => "as root: apt-get install gcc libc6-dev",
             Self::Cxx => "as root: apt-get install g++",
             Self::Vulkan => "as root: apt-get install mesa-vulkan-drivers",
             Self::Chromium => "as root: apt-get install chromium",
             Self::Sqlite => "as root: apt-get install sqlite3",
+            Self::Bunny => "as root: apt-get install glmark2-data",
         }
     }
 
-    /// Whether a task can go on without it: rendering has the native backend.
-    fn optional_for_serving(self) -> bool {
-        self == Self::Vulkan
+    /// Whether a task can go on without it: rendering has the native backend, and a test says that it is skipped.
+    fn optional(self, testing: bool) -> bool {
+        match self {
+            Self::Vulkan => !testing,
+            Self::Bunny => true,
+            _ => false,
+        }
     }
 }
 
@@ -92,7 +98,7 @@ pub(crate) fn ensure(needs: &[Need]) -> Result<()> {
     }
     let mut fatal = false;
     for need in missing.into_iter().filter(|need| !need.present()) {
-        let optional = need.optional_for_serving() && !testing;
+        let optional = need.optional(testing);
         let rank = if optional { "note" } else { "missing" };
         eprintln!("{rank}: {}. Could not install it here; {}.", need.why(), need.by_hand());
         fatal |= !optional;

@@ -82,7 +82,7 @@ fn main() -> Result<()> {
 /// Builds what serving needs and becomes the server; a second start builds and renders nothing again.
 fn serve(data: &std::path::Path, listen: &str, gpu: bool) -> Result<()> {
     let gpu = gpu || install::has_gpu();
-    ensure(if gpu { &[Need::Node, Need::Cc, Need::Vulkan] } else { &[Need::Node, Need::Cc] })?;
+    ensure(if gpu { &[Need::Node, Need::Cxx, Need::Vulkan] } else { &[Need::Node, Need::Cxx] })?;
     let mut build = cargo(&["build", "--profile", "start", "--package", "kelir", "--no-default-features"]);
     if gpu {
         build.args(["--features", "gpu"]);
@@ -177,7 +177,7 @@ fn pictures() -> Result<()> {
 
 /// Everything the gate holds.
 fn test() -> Result<()> {
-    ensure(&[Need::Node, Need::Cxx, Need::Vulkan, Need::Chromium, Need::Sqlite])?;
+    ensure(&[Need::Node, Need::Cxx, Need::Vulkan, Need::Chromium, Need::Sqlite, Need::Bunny])?;
     step("format", cargo(&["fmt", "--all", "--check"]))?;
     step("web packages", npm("web", &["ci", "--ignore-scripts"]))?;
     step("web lint", npm("web", &["run", "lint"]))?;

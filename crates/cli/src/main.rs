@@ -34,6 +34,9 @@ enum Command {
     /// Look at scene files.
     #[command(subcommand)]
     Scene(commands::scene::Command),
+    /// Meshes: files checked and brought in, levels of detail made and measured.
+    #[command(subcommand)]
+    Mesh(commands::mesh::Command),
     /// Look at study files.
     #[command(subcommand)]
     Study(commands::study::Command),
@@ -124,6 +127,7 @@ fn run(command: Command) -> anyhow::Result<()> {
         Command::New(args) => commands::new::run(&args),
         Command::Technique(args) => commands::technique::run(&args),
         Command::Scene(command) => commands::scene::run(command),
+        Command::Mesh(command) => commands::mesh::run(command),
         Command::Study(command) => commands::study::run(command),
         Command::Bench(command) => commands::bench::run(command),
         Command::Stats(args) => commands::stats::run(args),

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::Mesh;
 use crate::topology::{Sets, Side, Topology, is_drawable, is_flat};
+use crate::{Mesh, Model};
 
 /// What a mesh is like. Vertices at one position are one for all that is said of edges, fans and parts: files split them where a texture or
 /// a normal has a seam, and the surface has none there.
@@ -44,6 +44,25 @@ pub struct Report {
 }
 
 impl Report {
+    fn counts(&mut self) -> [&mut usize; 14] {
+        [
+            &mut self.vertices,
+            &mut self.triangles,
+            &mut self.out_of_range,
+            &mut self.not_finite,
+            &mut self.zero_area,
+            &mut self.duplicates,
+            &mut self.boundary_edges,
+            &mut self.crowded_edges,
+            &mut self.inconsistent_edges,
+            &mut self.pinched_vertices,
+            &mut self.coincident_vertices,
+            &mut self.unused_vertices,
+            &mut self.parts,
+            &mut self.inward_parts,
+        ]
+    }
+
     /// Whether every triangle can be drawn: indices in range, positions finite, an area.
     pub fn is_drawable(&self) -> bool {
         self.triangles > 0 && self.out_of_range + self.not_finite + self.zero_area == 0
@@ -84,6 +103,21 @@ impl Report {
         }
         faults
     }
+}
+
+/// Looks at each part of a model where it rests, one by one: parts may touch. Counts add up.
+pub fn check_model(model: &Model) -> Report {
+    let parts = model.posed(&model.rest());
+    let mut reports = parts.iter().map(|(_, mesh)| check(mesh));
+    let Some(mut sum) = reports.next() else { return Report::default() };
+    for report in reports {
+        sum.closed &= report.closed;
+        sum.euler += report.euler;
+        for (sum, more) in sum.counts().into_iter().zip(report.clone().counts()) {
+            *sum += *more;
+        }
+    }
+    sum
 }
 
 /// Looks at everything, whatever the mesh holds.
@@ -273,6 +307,19 @@ mod tests {
         let report = check(&two);
         assert_eq!((report.inward_parts, report.parts, report.inconsistent_edges), (1, 2, 0));
         assert!(report.is_manifold() && !report.is_solid());
+    }
+
+    #[test]
+    fn parts_of_a_model_are_looked_at_one_by_one() {
+        let mut model = Model::from(cube());
+        model.nodes.push(model.nodes[0].clone());
+        model.nodes[1].rest.translation.x = 1.0;
+        // As one mesh the two have a face in common.
+        assert!(!check(&model.merged(&model.rest())).is_manifold());
+        let report = check_model(&model);
+        assert!(report.is_solid());
+        assert_eq!((report.parts, report.triangles, report.euler), (2, 24, 4));
+        assert_eq!(check_model(&Model::default()).faults(), ["no triangles"]);
     }
 
     #[test]

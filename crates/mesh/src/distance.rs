@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::Mesh;
 use crate::mesh::vector;
@@ -27,7 +27,7 @@ pub struct Distance {
 }
 
 /// What the points of one surface find of another: the nearest point of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OneWay {
     /// Root mean square of the distances over the area, metres.
     pub rms_m: f64,

@@ -4,8 +4,12 @@ use std::time::{Duration, Instant};
 
 use meshopt::{SimplifyOptions, simplify_with_update};
 
+use crate::mesh::sha256;
 use crate::repair::{drop_unused, weld};
 use crate::{Mesh, Report, check};
+
+/// Counts the changes of what [`levels`] makes of a mesh: what was made under another is made anew.
+const REVISION: u32 = 1;
 
 /// What guides the simplification beside the positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,7 +22,7 @@ pub enum Attributes {
 }
 
 /// How much the normals count against positions, which are shares of the mesh's extent.
-const NORMAL_WEIGHT: f32 = 0.05;
+const NORMAL_WEIGHT: f32 = 0.1;
 /// The same of texture coordinates: they follow the positions, and seldom decide.
 const TEXTURE_WEIGHT: f32 = 0.05;
 
@@ -135,6 +139,11 @@ pub fn levels(mesh: &Mesh, targets: &[usize], attributes: Attributes) -> Result<
         levels.push(Level { mesh: last.clone(), target, missed, report: last_report.clone(), lost, took });
     }
     Ok(levels)
+}
+
+/// What decides the levels of a mesh, as a hash in hexadecimal: with the same one they are the same, on one kind of machine.
+pub fn levels_key(mesh: &Mesh, targets: &[usize], attributes: Attributes) -> String {
+    sha256(format!("kelir-lod/{REVISION}\n{}\n{attributes:?}\n{targets:?}", mesh.hash()).as_bytes())
 }
 
 /// A ladder of `steps` levels between a mesh's triangles and `least`, each the same share of the one before it; neighbours differ by two at
@@ -382,6 +391,17 @@ mod tests {
             refused(&broken, &[4]),
             "the mesh has 1 triangle with an index out of range: repair it first"
         );
+    }
+
+    #[test]
+    fn extreme_sizes_are_simplified_alike() {
+        let plain = levels(&ball(1.0, 12), &[100], Attributes::Normals).unwrap().remove(0);
+        for size in [1e-30, 1e30] {
+            let level = levels(&ball(size, 12), &[100], Attributes::Normals).unwrap().remove(0);
+            assert_eq!((level.mesh.triangles.len(), level.missed), (100, None), "{size}");
+            let ratio = level.mesh.area() / plain.mesh.area() / (size * size);
+            assert!((ratio - 1.0).abs() < 1e-3, "{size}: {ratio}");
+        }
     }
 
     #[test]

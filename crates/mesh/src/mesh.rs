@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 /// A surface of triangles that share vertices.
 ///
-/// Anyone may put anything in: what is computed of a triangle whose indices are out of range leaves it out, and [`crate::check`] counts it.
+/// Anyone may put anything in: what is computed of a triangle whose indices are out of range leaves it out, and [`check()`](crate::check()) counts it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Vertices, metres: right-handed, y up.
@@ -135,6 +135,11 @@ impl Mesh {
         self.triangles.as_flattened().iter().for_each(|index| hash.update(index.to_le_bytes()));
         hex::encode(hash.finalize())
     }
+}
+
+/// SHA-256 of bytes, in hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    hex::encode(Sha256::digest(bytes))
 }
 
 /// In f64, where sums and products of coordinates are all but exact.

@@ -4,9 +4,9 @@ use std::collections::{HashMap, HashSet};
 
 use serde::Serialize;
 
-use crate::Mesh;
 use crate::mesh::{six_volumes, vector, welded};
 use crate::topology::{Topology, is_drawable, is_flat};
+use crate::{Mesh, Model};
 
 /// What was done, in this order.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -30,6 +30,19 @@ pub struct Repaired {
 }
 
 impl Repaired {
+    fn counts(&mut self) -> [&mut usize; 8] {
+        [
+            &mut self.undrawable,
+            &mut self.welded,
+            &mut self.zero_area,
+            &mut self.duplicates,
+            &mut self.unused,
+            &mut self.turned,
+            &mut self.turned_pieces,
+            &mut self.one_sided,
+        ]
+    }
+
     /// What was done, each with its count; empty where nothing was.
     pub fn list(&self) -> Vec<String> {
         let counts = [
@@ -73,6 +86,22 @@ pub fn repair(mesh: &mut Mesh) -> Repaired {
     }
     done.unused = drop_unused(mesh) - done.welded;
     done
+}
+
+/// Repairs each part of a model by itself; one whose vertices follow a skin keeps them all, and is only wound.
+pub fn repair_model(model: &mut Model) -> Repaired {
+    let mut sum = Repaired::default();
+    for part in model.nodes.iter_mut().flat_map(|node| &mut node.parts) {
+        let mut done = Repaired::default();
+        match part.weights {
+            None => done = repair(&mut part.mesh),
+            Some(_) => wind(&mut part.mesh, &mut done),
+        }
+        for (sum, more) in sum.counts().into_iter().zip(done.counts()) {
+            *sum += *more;
+        }
+    }
+    sum
 }
 
 /// Joins vertices of one position and texture coordinates; answers how many of them no triangle has any longer.

@@ -44,17 +44,26 @@ impl Checked {
 
     /// A file that is wrong.
     pub(super) fn wrong(&mut self, file: &Path, problems: &Problems) {
-        self.add(file, problems, problems.to_string());
+        self.add(file, None, problems, problems.to_string());
+    }
+
+    /// A file that can be read, and is wrong; `about` says for programs what it is.
+    pub(super) fn bad(&mut self, file: &Path, about: Value, problems: &Problems) {
+        self.add(file, Some(about), problems, problems.to_string());
     }
 
     /// A file that could not be read at all.
     pub(super) fn unreadable(&mut self, file: &Path, rule: String) {
         let problem = Problem::new(file.display().to_string(), "", None, rule.clone());
-        self.add(file, &[problem], rule);
+        self.add(file, None, &[problem], rule);
     }
 
-    fn add(&mut self, file: &Path, problems: &[Problem], text: String) {
-        self.files.push(json!({ "file": file.display().to_string(), "good": false, "problems": problems }));
+    fn add(&mut self, file: &Path, about: Option<Value>, problems: &[Problem], text: String) {
+        let mut wrong = json!({ "file": file.display().to_string(), "good": false, "problems": problems });
+        if let Some(about) = about {
+            wrong["about"] = about;
+        }
+        self.files.push(wrong);
         self.problems.push(text);
     }
 

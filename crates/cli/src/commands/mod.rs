@@ -7,6 +7,7 @@ mod checked;
 mod drawing;
 pub(crate) mod export;
 mod knobs;
+pub(crate) mod mesh;
 pub(crate) mod new;
 pub(crate) mod paper;
 pub(crate) mod power;

@@ -77,7 +77,7 @@ impl Format {
 
 /// Reads a file. `beside` answers a file beside it by its name there, which is relative and leaves no folder; only glTF asks for any.
 ///
-/// Indices out of range and positions that are no numbers are read as they are: [`crate::check`] counts them. Errors: the first thing that
+/// Indices out of range and positions that are no numbers are read as they are: [`check()`](crate::check()) counts them. Errors: the first thing that
 /// breaks the format, or that this reader leaves out (morph targets, sparse accessors, required extensions, …), by its name.
 pub fn read(
     bytes: &[u8],

@@ -1,3 +1,4 @@
 //! What the crate promises of whole files.
 
+mod bunny;
 mod hostile;

@@ -158,7 +158,7 @@ mod tests {
             "lights = 7: is a knob of points, not of pa; pa has split, weights, strips, variant, map_size and dome_steps"
         );
         let seed = said("points", json!({ "seed": 1 }));
-        assert!(seed.starts_with("seed = 1: is a knob of mc and pcss, not of points; "), "{seed}");
+        assert!(seed.starts_with("seed = 1: is a knob of mc, pcss and raytrace, not of points; "), "{seed}");
         let close = said("mc", json!({ "ssp": 64 }));
         assert!(
             close.starts_with("ssp = 64: mc has no such knob (did you mean spp?); mc has spp, "),
@@ -166,7 +166,7 @@ mod tests {
         );
         assert_eq!(
             said("pcs", json!({})),
-            "technique = \"pcs\": must be one of pa, mc, points, pcss and oracle (did you mean pcss?)"
+            "technique = \"pcs\": must be one of pa, mc, points, pcss, oracle and raytrace (did you mean pcss?)"
         );
         // Every problem at once.
         let both = said("pa", json!({ "split": 1000, "map_size": 1 }));
