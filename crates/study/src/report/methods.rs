@@ -169,20 +169,15 @@ fn endpoint(study: &StudyDefinition) -> String {
     let Some(named) = &study.primary else {
         return "The study file names no primary endpoint: no result was singled out beforehand, and none is reported as if it had been.".to_owned();
     };
-    let of = match (&named.block, &named.item, &named.compare) {
-        (Some(block), Some(item), _) => format!("item {item} of block {block}"),
-        (Some(block), None, _) => format!("block {block}"),
-        (None, _, Some([a, b])) => format!("{a} against {b}"),
-        (None, _, None) => String::new(),
-    };
     let planned = match named.participants {
         Some(n) => format!(", to be looked at when {n} participants are judged"),
         None => "; the file does not say after how many participants it is to be looked at".to_owned(),
     };
     format!(
-        "The primary endpoint named in the study file is the {} of {of} at a level of {ALPHA}, uncorrected{planned}. Everything else is secondary, or exploratory where \
+        "The primary endpoint named in the study file is the {} of {} at a level of {ALPHA}, uncorrected{planned}. Everything else is secondary, or exploratory where \
          no test was planned.",
-        named.test.in_words()
+        named.test.in_words(),
+        named.subject()
     )
 }
 
