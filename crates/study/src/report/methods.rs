@@ -22,7 +22,9 @@ const WILCOXON: &str =
     "Wilcoxon, F. (1945). Individual comparisons by ranking methods. Biometrics Bulletin, 1(6), 80–83.";
 const WILSON: &str = "Wilson, E. B. (1927). Probable inference, the law of succession, and statistical inference. Journal of the American \
      Statistical Association, 22(158), 209–212.";
-const DAVISON: &str = "Davison, A. C., & Hinkley, D. V. (1997). Bootstrap methods and their application. Cambridge University Press.";
+const HALL: &str = "Hall, P. (1988). On symmetric bootstrap confidence intervals. Journal of the Royal Statistical Society: Series B, 50(1), 35–45.";
+const HESTERBERG: &str = "Hesterberg, T. C. (2015). What teachers should know about the bootstrap: resampling in the undergraduate statistics curriculum. \
+     The American Statistician, 69(4), 371–386.";
 const FLEISS: &str = "Fleiss, J. L., & Cuzick, J. (1979). The reliability of dichotomous judgments: unequal numbers of judges per subject. \
      Applied Psychological Measurement, 3(4), 537–542.";
 const LIANG: &str = "Liang, K.-Y., & Zeger, S. L. (1986). Longitudinal data analysis using generalized linear models. Biometrika, 73(1), 13–22.";
@@ -339,11 +341,12 @@ fn psychometric(text: &mut Text, report: &Report) {
             "Psychometric functions ψ(x) = γ + (1 − γ − λ) F(x) have a guess rate γ of {GUESS} (two alternatives) and a lapse rate λ with the \
              prior Beta(1, 10) where the study file does not fix it; threshold (halfway between guessing and lapsing) and width (from F = 5% to 95%) are \
              given where the posterior under psignifit 4's priors is highest, with {:.0}% posterior intervals and beta-binomial overdispersion; the \
-             threshold also by maximum likelihood with an interval from {REPLICATES} resamples of participants. Goodness of fit is the \
-             deviance against that of simulated observers, each fitted anew.",
+             threshold also by maximum likelihood with an interval from {REPLICATES} resamples of participants: the estimate ± the distance from it \
+             within which as many resamples lie as a normal deviate lies within t × √(n/(n − 1)), t with n − 1 degrees of freedom for n participants. \
+             Goodness of fit is the deviance against that of simulated observers, each fitted anew.",
             100.0 * LEVEL
         ),
-        &[SCHUETT, WICHMANN, DAVISON],
+        &[SCHUETT, WICHMANN, HALL, HESTERBERG],
     );
 }
 
