@@ -231,6 +231,19 @@ fn power_is_simulated_from_a_design_file_and_a_wrong_one_names_every_problem() {
     let found: serde_json::Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
     assert_eq!(found["sizes"][1]["participants"], 12);
     assert_eq!(found["sizes"][1]["tests"][0]["rate"]["runs"], 20);
+    assert!(!printed.contains("rimary endpoint"), "{printed}");
+
+    let file = folder.path().join("shadow-puppets.toml");
+    let study = std::fs::read_to_string(&file).unwrap();
+    let named = "primary = { test = \"t-test\", block = \"photographs\", participants = 32 }\n";
+    std::fs::write(&file, format!("{named}{study}")).unwrap();
+    let printed = kelir_ok(&["power", "--design", &design]);
+    let told =
+        "Primary endpoint: two-tailed one-sample t-test of block photographs, at α = 0.05, uncorrected";
+    let line = printed.lines().find(|line| line.starts_with(told)).unwrap_or_else(|| panic!("{printed}"));
+    assert!(line.contains("no Holm family") && line.contains("32 judged participants"), "{line}");
+    let rows = printed.matches("primary endpoint: two-tailed one-sample t-test").count();
+    assert_eq!(rows, 2, "its power, and the fewest participants: {printed}");
 
     let wrong = small
         .replace("simulations = 20", "simulations = 0")

@@ -250,6 +250,44 @@ fn a_terminal_gets_links_and_warnings_and_a_file_all_that_is_logged() {
 }
 
 #[test]
+fn a_scene_that_may_be_mistaken_is_told_by_check_and_by_the_log_of_each_start() {
+    let data = small_data();
+    // A scan without alpha, in a scene that two blocks show.
+    image::RgbImage::new(64, 64).save(data.path().join("puppets/scan.png")).unwrap();
+    edit(data.path(), "scenes/near.toml", "puppets/square.svg", "puppets/scan.png");
+    let study = data.path().join("studies/small.toml");
+    let said = kelir_ok(&["study", "check", study.to_str().unwrap()]);
+    let told: Vec<&str> = said.lines().filter(|line| line.starts_with("warning: ")).collect();
+    assert_eq!(told.len(), 1, "{said}");
+    for part in [
+        study.to_str().unwrap(),
+        "blocks[0].pairs[0].scene = \"../scenes/near.toml\"",
+        "scenes/near.toml:15:9: puppets[0].image = \"../puppets/scan.png\"",
+        "is this a scan without alpha?",
+    ] {
+        assert!(told[0].contains(part), "no {part:?} in {told:?}");
+    }
+    let (_, of_scene) = told[0].split_once("scene = ").unwrap();
+    let logged = |said: &str| {
+        let port = free_port();
+        let terminal = start_at_terminal(data.path(), port);
+        can_be_taken(port);
+        stop_at_terminal(data.path(), terminal);
+        let log = std::fs::read_to_string(data.path().join("server.log")).unwrap();
+        log.lines().filter(|line| line.contains("studies/small.toml: ") && line.contains(said)).count()
+    };
+    assert_eq!(logged(of_scene), 1);
+    assert_eq!(logged(of_scene), 2, "what is remembered is said again");
+    // Control: the second start did not read the scene.
+    edit(data.path(), "scenes.json", "is this a scan without alpha?", "as was remembered");
+    assert_eq!(logged("as was remembered"), 1);
+    // Mended, it is told no longer.
+    edit(data.path(), "scenes/near.toml", "puppets/scan.png", "puppets/square.svg");
+    assert!(kelir_ok(&["study", "check", study.to_str().unwrap()]).contains("small.toml: good ("));
+    assert_eq!(logged("scene = "), 3);
+}
+
+#[test]
 fn the_greeting_says_whose_password_is_in_force_and_links_can_be_opened() {
     let data = small_data();
     let greeting = |password: Option<&str>, listen: &str| {

@@ -1,4 +1,4 @@
-// Generated from openapi.json by `npm run types`; do not edit. 05b34929478c937f13c8dc9f077bc4a83e360bbc6fc0369afb2052c881761dd0 0a08f24b9106a458f0593386d5bfedadfad38013031ebb3f373eec247db0e9f6
+// Generated from openapi.json by `npm run types`; do not edit. daaa80ed544aabf1980c72f96ec70a27c8cb91b8588e52c70d1202feff6687c8 cb5365d309236909d446b3a9806d38856f7ddcf2bd8ce56427cff3d303eacc3e
 export interface paths {
     "/api/v1/auth/session": {
         parameters: {
@@ -959,7 +959,7 @@ export interface components {
          * @description How the interval is read off the resampled statistics.
          * @enum {string}
          */
-        BootstrapMethod: "percentile" | "bias-corrected";
+        BootstrapMethod: "percentile" | "bias-corrected" | "symmetric";
         /** @description What checking the stored answers found. */
         Chain: {
             /**

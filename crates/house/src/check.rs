@@ -42,7 +42,7 @@ impl Library {
         self.checked(path, true)
     }
 
-    /// What may be a mistake in a study that is good: in its file, and in the pictures that it names.
+    /// What may be a mistake in a study that is good: in its file, and in the pictures and scenes that it names.
     pub fn warnings(&self, path: &str, study: &StudyDefinition) -> Vec<Problem> {
         [study.warnings(path), doubts_around(self, path, study)].concat()
     }
@@ -157,7 +157,8 @@ fn problems_around(library: &Library, file: &str, study: &StudyDefinition) -> Ve
     found.problems
 }
 
-/// What picture files ask that nobody will do: participants see them otherwise than their maker may.
+/// What picture files ask that nobody will do, so that participants see them otherwise than their maker may; and what may be a mistake in a scene, told
+/// of the first item that shows it.
 fn doubts_around(library: &Library, file: &str, study: &StudyDefinition) -> Vec<Problem> {
     let mut found = Found { file, problems: Vec::new() };
     for (name, condition) in &study.conditions {
@@ -169,6 +170,17 @@ fn doubts_around(library: &Library, file: &str, study: &StudyDefinition) -> Vec<
             for rule in unheeded.unwrap_or_default() {
                 found.add(format!("conditions.{name}.files.{item}"), Some(path), rule);
             }
+        }
+    }
+    let mut told = BTreeSet::new();
+    for (_, item, field) in items(study) {
+        let Some(named) = &item.scene else { continue };
+        let path = beside(file, named);
+        if !told.insert(path.clone()) {
+            continue;
+        }
+        for warning in library.scene_facts(&path).map(|facts| facts.warnings).unwrap_or_default() {
+            found.add(format!("{field}.scene"), Some(named), warning.to_string());
         }
     }
     found.problems

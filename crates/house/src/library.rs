@@ -108,7 +108,11 @@ impl Library {
     fn learnt(&self, path: &str) -> Result<SceneFacts, Vec<Problem>> {
         let reading = Reading { library: self, files: Mutex::default() };
         let scene = self.scene_by(path, &reading)?;
-        let facts = SceneFacts { sha256: scene.sha256().to_owned(), moves: scene.timeline().is_some() };
+        let facts = SceneFacts {
+            sha256: scene.sha256().to_owned(),
+            moves: scene.timeline().is_some(),
+            warnings: scene.warnings().to_vec(),
+        };
         if let Some(remembered) = &self.remembered {
             let files = reading.files.into_inner().unwrap_or_else(PoisonError::into_inner);
             let known = Known { files, facts: facts.clone() };

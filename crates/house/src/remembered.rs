@@ -1,6 +1,7 @@
 //! What earlier starts learnt of scenes: reading one rasterises its puppets, and what it is follows from its files alone.
 
 use kelir_store::private_file;
+use kelir_study::Problem;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -13,6 +14,8 @@ pub(crate) struct SceneFacts {
     pub(crate) sha256: String,
     /// Whether it has a timeline.
     pub(crate) moves: bool,
+    /// What may be a mistake in it.
+    pub(crate) warnings: Vec<Problem>,
 }
 
 /// A scene with the files that it was read from, by path and hash.
@@ -84,7 +87,9 @@ mod tests {
     #[test]
     fn a_scene_is_remembered_while_its_files_are_the_same() {
         let dir = tempfile::tempdir().unwrap();
-        let facts = SceneFacts { sha256: "5".repeat(64), moves: true };
+        let warnings =
+            vec![Problem::new("a.toml", "puppets[0].image", None, "is this a scan without alpha?")];
+        let facts = SceneFacts { sha256: "5".repeat(64), moves: true, warnings };
         let files =
             BTreeMap::from([("a.toml", "1"), ("p.svg", "2")].map(|(k, v)| (k.to_owned(), v.to_owned())));
         Remembered::load(dir.path()).keep(dir.path(), "a.toml", Known { files, facts: facts.clone() });
@@ -102,6 +107,11 @@ mod tests {
         std::fs::write(path(dir.path()), text.replace("\"program\": \"", "\"program\": \"x")).unwrap();
         assert!(Remembered::load(dir.path()).scenes.is_empty());
         std::fs::write(path(dir.path()), "{").unwrap();
+        assert!(Remembered::load(dir.path()).scenes.is_empty());
+        // One that was written before warnings were kept knows nothing of them.
+        let before = text.replace("\"warnings\"", "\"other\"");
+        assert!(before != text);
+        std::fs::write(path(dir.path()), before).unwrap();
         assert!(Remembered::load(dir.path()).scenes.is_empty());
     }
 }

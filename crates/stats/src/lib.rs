@@ -6,7 +6,7 @@
 //! | [`distributions`] | normal, Student t, noncentral t, beta, gamma and χ², F, binomial |
 //! | [`descriptive`] | mean, variance, autocorrelation, one-way analysis of variance |
 //! | [`inference`] | tests, intervals, effect sizes, equivalence, Bayes factor, corrections, power |
-//! | [`clustered`] | choices of participants × pairs: intraclass correlation, bootstrap, robust and mixed logit |
+//! | [`clustered`] | choices of participants × pairs: intraclass correlation, the share's interval, bootstrap, robust and mixed logit; whether pairs differ, a logit with pairs random too, slopes within participants |
 //! | [`pairwise`] | Bradley–Terry and Thurstone scaling in JOD, circular triads, odd observers |
 //! | [`psychometric`] | psychometric functions: maximum likelihood, posterior, goodness of fit |
 //! | [`simulate`] | simulated observers: power, precision, coverage |

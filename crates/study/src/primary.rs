@@ -78,6 +78,18 @@ impl PrimaryTest {
     }
 }
 
+impl PrimaryEndpoint {
+    /// What is tested, in words: "block stills".
+    pub fn subject(&self) -> String {
+        match (&self.block, &self.item, &self.compare) {
+            (Some(block), Some(item), _) => format!("item {item} of block {block}"),
+            (Some(block), None, _) => format!("block {block}"),
+            (None, _, Some([a, b])) => format!("{a} against {b}"),
+            (None, _, None) => String::new(),
+        }
+    }
+}
+
 /// Reads `[primary]`; what its test does not need it does not take.
 pub(crate) fn read(fields: &mut Fields<'_>, blocks: &[&Block], has_bound: bool) -> Option<PrimaryEndpoint> {
     let mut fields = fields.given("primary", SECTION)?.table()?;

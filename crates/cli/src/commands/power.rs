@@ -6,8 +6,9 @@ use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use kelir_house::shipped::{Shipped, is_file};
-use kelir_study::StudyDefinition;
 use kelir_study::power::{Design, DesignFile, Needed, Power, Rate, power};
+use kelir_study::report::ALPHA;
+use kelir_study::{PrimaryEndpoint, StudyDefinition};
 
 use crate::output::{Figures, table};
 use crate::{bad_input, progress};
@@ -96,6 +97,7 @@ fn text(found: &Power) -> String {
         found.power,
         0.98 / (found.simulations as f64).sqrt()
     )];
+    parts.extend(found.primary.as_ref().map(|named| primary(named, found.alpha)));
     let sizes: Vec<String> = found.sizes.iter().map(|size| format!("n = {}", size.participants)).collect();
     let header = |first: &[&'static str]| -> Vec<String> {
         first.iter().map(|title| (*title).to_owned()).chain(sizes.clone()).collect()
@@ -116,7 +118,8 @@ fn text(found: &Power) -> String {
             .filter(|&i| first.tests[i].null == null)
             .map(|i| {
                 let rates = found.sizes.iter().map(|size| format!("{:.3}", size.tests[i].rate.rate));
-                [first.tests[i].of.clone(), first.tests[i].test.to_owned()].into_iter().chain(rates).collect()
+                let test = test_name(first.tests[i].test, first.tests[i].primary);
+                [first.tests[i].of.clone(), test].into_iter().chain(rates).collect()
             })
             .collect();
         if !rows.is_empty() {
@@ -172,7 +175,26 @@ fn row(needed: &Needed, most: u32) -> Vec<String> {
     let participants = needed.participants.map_or_else(|| format!("more than {most}"), |n| n.to_string());
     let rate = needed.rate;
     let power = format!("{:.3} [{:.3}, {:.3}]", rate.rate, rate.low, rate.high);
-    vec![needed.of.clone(), needed.test.to_owned(), participants, power]
+    vec![needed.of.clone(), test_name(needed.test, needed.primary), participants, power]
+}
+
+fn test_name(test: &str, primary: bool) -> String {
+    if primary { format!("primary endpoint: {test}") } else { test.to_owned() }
+}
+
+/// What the study is made to decide, and how that is judged.
+fn primary(named: &PrimaryEndpoint, alpha: f64) -> String {
+    let when = named.participants.map(|n| format!(" The study file plans it for {n} judged participants."));
+    let level = match alpha == ALPHA {
+        true => String::new(),
+        false => format!(" A report judges it at {ALPHA}."),
+    };
+    format!(
+        "Primary endpoint: {} of {}, at α = {alpha}, uncorrected, as it is one test and in no Holm family.{level}{}",
+        named.test.in_words(),
+        named.subject(),
+        when.unwrap_or_default()
+    )
 }
 
 /// Says it where a test of all choices cries wolf.

@@ -18,6 +18,10 @@ pub enum BootstrapMethod {
     Percentile,
     /// Bias-corrected and accelerated (Efron 1987), with the jackknife over participants for the acceleration.
     BiasCorrected,
+    /// The estimate ± a quantile of the replicates' distances from it (Hall 1988, J. R. Stat. Soc. B 50, 35): that within which t with one degree of
+    /// freedom less than there are participants, times √(n/(n − 1)), has the level, as replicates of n scatter less than samples do and tell their own
+    /// scatter only roughly (Hesterberg 2015, Am. Stat. 69, 371).
+    Symmetric,
 }
 
 /// A bootstrap interval.
@@ -93,8 +97,17 @@ pub fn bootstrap<T>(
     }
 
     let tail = (1.0 - level) / 2.0;
+    let at = |low: f64, high: f64| (quantile(&values, low), quantile(&values, high));
     let (low, high) = match method {
-        BootstrapMethod::Percentile => (tail, 1.0 - tail),
+        BootstrapMethod::Percentile => at(tail, 1.0 - tail),
+        BootstrapMethod::Symmetric => {
+            let n = participants.len() as f64;
+            let reach = normal::t_quantile(1.0 - tail, n - 1.0) * (n / (n - 1.0)).sqrt();
+            let mut distances: Vec<f64> = values.iter().map(|x| (x - estimate).abs()).collect();
+            distances.sort_by(f64::total_cmp);
+            let half = quantile(&distances, 1.0 - 2.0 * normal::cdf(-reach));
+            (estimate - half, estimate + half)
+        }
         BootstrapMethod::BiasCorrected => {
             let jackknife: Vec<f64> = (0..participants.len())
                 .filter_map(|out| {
@@ -103,13 +116,14 @@ pub fn bootstrap<T>(
                     finite(&rest)
                 })
                 .collect();
-            corrected_tails(&values, estimate, &jackknife, tail)
+            let (low, high) = corrected_tails(&values, estimate, &jackknife, tail);
+            at(low, high)
         }
     };
     Ok(Bootstrap {
         estimate,
-        low: quantile(&values, low),
-        high: quantile(&values, high),
+        low,
+        high,
         level,
         standard_error: standard_deviation(&values),
         replicates,

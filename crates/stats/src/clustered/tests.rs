@@ -271,6 +271,42 @@ fn the_bootstrap_covers_what_it_claims() {
 }
 
 #[test]
+fn the_symmetric_interval_of_a_mean_is_students() {
+    // Where the statistic is a mean, what is widened is the interval that Student's t gives exactly.
+    for n in [6, 12, 40] {
+        let values: Vec<f64> = (0..n).map(|i| (f64::from(i) * 0.37).fract()).collect();
+        let of = |sample: &[&f64]| Some(sample.iter().copied().sum::<f64>() / sample.len() as f64);
+        let half = |method| {
+            let found = bootstrap(&values, 40_000, 0.95, 1, method, of).unwrap();
+            assert!(found.low < found.estimate && found.estimate < found.high);
+            [found.estimate - found.low, found.high - found.estimate]
+        };
+        let m = f64::from(n);
+        let mean = values.iter().sum::<f64>() / m;
+        let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (m - 1.0);
+        // qt(.975, n − 1), R 4.2.2.
+        let t = match n {
+            6 => 2.570581835636314,
+            12 => 2.200985160082949,
+            _ => 2.022690911734728,
+        };
+        let students = t * (variance / m).sqrt();
+        let [low, high] = half(BootstrapMethod::Symmetric);
+        // The mean of few values drawn from few has shorter tails than a normal one.
+        assert!(
+            (low - high).abs() < 1e-12 && (low / students - 1.0).abs() < 0.5 / m,
+            "{n}: {low} {students}"
+        );
+        // Control: the quantiles themselves are narrower, with six participants by a third.
+        let [low, high] = half(BootstrapMethod::Percentile);
+        assert!(
+            (low + high) / 2.0 / students < if n == 6 { 0.75 } else { 0.97 },
+            "{n}: {low} {high} {students}"
+        );
+    }
+}
+
+#[test]
 fn the_bootstrap_refuses_what_it_cannot_do() {
     let clusters = Cluster::from_counts(&[3, 3, 3]);
     let method = BootstrapMethod::Percentile;

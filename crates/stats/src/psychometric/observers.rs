@@ -22,7 +22,7 @@ pub struct ResampledThreshold {
 /// The interval of the threshold (unscaled, F = ½) from resampled participants: each brings all their answers along, so that it holds
 /// whatever the answers of one have in common, which [`posterior`](super::posterior()) takes for independent. The estimate is the maximum of the
 /// likelihood with λ's prior, without overdispersion, over everybody's answers together, and so it is for each resample, searched as widely;
-/// percentile method; deterministic for a seed.
+/// [`BootstrapMethod::Symmetric`]; deterministic for a seed.
 ///
 /// `participants`: the levels each of them answered. Errors: those of [`fit`](super::fit()) and of [`bootstrap`].
 pub fn resampled_threshold(
@@ -64,7 +64,7 @@ pub fn resampled_threshold(
         at_bound = Some(at_bound.map_or(0, |n| n + usize::from(unbound)));
         Some(best.at[0])
     };
-    let bootstrap = bootstrap(&people, replicates, level, seed, BootstrapMethod::Percentile, found);
+    let bootstrap = bootstrap(&people, replicates, level, seed, BootstrapMethod::Symmetric, found);
     let bootstrap = bootstrap.map_err(|error| match error {
         StatsError::NoSolution { reason, .. } => {
             StatsError::NoSolution { what: "the threshold's interval", reason }

@@ -3,6 +3,8 @@
 use super::crowd::chances;
 use super::design::{Design, Truth};
 use crate::answers::{blocks, compares, conditions};
+use crate::definition::Item;
+use crate::primary::{PrimaryEndpoint, PrimaryTest};
 use crate::report::{ChoiceAnalysis, Report};
 use kelir_stats::pairwise::{ScaleOptions, Wins, scale};
 
@@ -10,6 +12,8 @@ use kelir_stats::pairwise::{ScaleOptions, Wins, scale};
 pub(super) struct Claims {
     pub(super) tests: Vec<TestClaim>,
     pub(super) intervals: Vec<IntervalClaim>,
+    /// Whether the first test is the primary endpoint.
+    primary: bool,
     /// Of each analysed block, whether a procedure steers its choices.
     steered: Vec<bool>,
     differences: usize,
@@ -19,6 +23,7 @@ pub(super) struct Claims {
 pub(super) struct TestClaim {
     pub(super) of: String,
     pub(super) test: &'static str,
+    pub(super) primary: bool,
     pub(super) null: bool,
 }
 
@@ -54,7 +59,7 @@ const TESTS: [(&str, PValue); 7] = [
 /// The test that no clustered data should be judged by; right where each participant makes one choice.
 pub(super) const PER_TRIAL: &str = "binomial test of all choices, ignoring who made them";
 const SECOND: &str = "sign test of the counts";
-/// Beside the t-test, before [`SECOND`].
+/// Beside a t-test of Holm's family, before [`SECOND`].
 const HOLM: &str = "t-test, Holm over blocks";
 const EQUIVALENCE: &str = "equivalence within the study's bound";
 const SCALE: &str = "difference on the scale";
@@ -64,25 +69,31 @@ impl Claims {
         let (mut tests, mut intervals) = (Vec::new(), Vec::new());
         let analysed: Vec<usize> =
             (0..design.study.blocks.len()).filter(|&b| !design.study.blocks[b].catch).collect();
-        let bound = design.study.equivalence.as_ref().map(|bound| bound.within);
+        let differences = true_differences(design);
+        if let Some(named) = &design.study.primary {
+            tests.push(TestClaim {
+                of: named.subject(),
+                test: named.test.in_words(),
+                primary: true,
+                null: asks_for_nothing(design, named, &differences),
+            });
+        }
         for &b in &analysed {
             let block = &design.study.blocks[b];
             let mean = chances(design, b).map_or(f64::NAN, |chances| chances.iter().sum());
             let share = Some(mean / block.items.len() as f64).filter(|share| share.is_finite());
-            let distance = (mean - block.mu()).abs();
             let of = || block.id.clone();
             for (test, _) in TESTS {
-                if test == SECOND {
-                    tests.push(TestClaim { of: of(), test: HOLM, null: distance < 1e-12 });
-                }
                 let null = match test {
-                    // What is equal is equivalent: there those tests have power.
-                    EQUIVALENCE => bound.is_none_or(|within| distance >= within * block.items.len() as f64),
-                    _ => distance < 1e-12,
+                    EQUIVALENCE => !is_equivalent(design, b),
+                    _ => is_even(design, b),
                 };
+                if test == SECOND && !design.study.is_primary_t_test(block) {
+                    tests.push(TestClaim { of: of(), test: HOLM, primary: false, null });
+                }
                 // With one choice a participant there is nobody to ignore.
                 let test = if test == PER_TRIAL && block.items.len() == 1 { "binomial test" } else { test };
-                tests.push(TestClaim { of: of(), test, null });
+                tests.push(TestClaim { of: of(), test, primary: false, null });
             }
             let threshold = match design.truths[b].as_ref().map(|t| &t.truth) {
                 Some(Truth::Threshold { threshold, .. }) => Some(*threshold),
@@ -104,14 +115,10 @@ impl Claims {
                 }
             }
         }
-        let differences = true_differences(design);
         for (a, b, truth) in &differences {
             let of = format!("{a} − {b}");
-            tests.push(TestClaim {
-                of: of.clone(),
-                test: SCALE,
-                null: truth.is_some_and(|d| d.abs() < 1e-6),
-            });
+            let null = is_no_difference(*truth);
+            tests.push(TestClaim { of: of.clone(), test: SCALE, primary: false, null });
             intervals.push(IntervalClaim {
                 of,
                 interval: "difference in JOD, over participants",
@@ -119,17 +126,21 @@ impl Claims {
             });
         }
         let steered = analysed.iter().map(|&b| design.study.blocks[b].adaptive.is_some()).collect();
-        Claims { tests, intervals, steered, differences: differences.len() }
+        let primary = design.study.primary.is_some();
+        Claims { tests, intervals, primary, steered, differences: differences.len() }
     }
 
     /// What a report claims at the level `alpha`.
     pub(super) fn check(&self, report: &Report, alpha: f64) -> Outcome {
         let (mut tests, mut intervals) = (Vec::new(), Vec::new());
         debug_assert_eq!(report.blocks.len(), self.steered.len());
+        if self.primary {
+            tests.push(report.primary.as_ref().and_then(|primary| primary.p).map(|p| p < alpha));
+        }
         for (block, steered) in report.blocks.iter().zip(&self.steered) {
             let analysis = &block.analysis;
             for (test, p) in TESTS {
-                if test == SECOND {
+                if test == SECOND && !block.primary {
                     tests.push(block.p_holm.map(|p| p < alpha));
                 }
                 tests.push(p(analysis).map(|p| p < alpha));
@@ -153,6 +164,50 @@ impl Claims {
             intervals.push(found.and_then(|d| Some([d.low?, d.high?])));
         }
         Outcome { tests, intervals }
+    }
+}
+
+/// Whether the observers of a block choose its target as often as not.
+fn is_even(design: &Design, block: usize) -> bool {
+    let mean = chances(design, block).map_or(f64::NAN, |chances| chances.iter().sum());
+    (mean - design.study.blocks[block].mu()).abs() < 1e-12
+}
+
+/// Whether they do so within the study's bound. What is equal is equivalent: there the tests of it have power.
+fn is_equivalent(design: &Design, block: usize) -> bool {
+    let of = &design.study.blocks[block];
+    let mean = chances(design, block).map_or(f64::NAN, |chances| chances.iter().sum());
+    let bound = design.study.equivalence.as_ref();
+    bound.is_some_and(|bound| (mean - of.mu()).abs() < bound.within * of.items.len() as f64)
+}
+
+/// Whether a true difference on the scale is none.
+fn is_no_difference(truth: Option<f64>) -> bool {
+    truth.is_some_and(|d| d.abs() < 1e-6)
+}
+
+/// Whether what the primary endpoint looks for is not there.
+fn asks_for_nothing(
+    design: &Design,
+    named: &PrimaryEndpoint,
+    differences: &[(String, String, Option<f64>)],
+) -> bool {
+    let block = design.study.blocks.iter().position(|block| named.block.as_ref() == Some(&block.id));
+    match (named.test, block) {
+        (PrimaryTest::Scale, _) => {
+            let compares =
+                |name: &String| named.compare.as_ref().is_some_and(|compared| compared.contains(name));
+            let found = differences.iter().find(|(a, b, _)| compares(a) && compares(b));
+            is_no_difference(found.and_then(|(_, _, truth)| *truth))
+        }
+        (PrimaryTest::Binomial, Some(b)) => {
+            let is_it = |item: &Item| named.item.as_ref() == Some(&item.id);
+            let item = design.study.blocks[b].items.iter().position(is_it);
+            let chance = item.and_then(|item| chances(design, b)?.get(item).copied());
+            chance.is_some_and(|chance| (chance - 0.5).abs() < 1e-12)
+        }
+        (PrimaryTest::Equivalence, Some(b)) => !is_equivalent(design, b),
+        (_, block) => block.is_some_and(|b| is_even(design, b)),
     }
 }
 

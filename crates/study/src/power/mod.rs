@@ -11,6 +11,7 @@ pub use design::{Design, DesignFile, Observers, Supposed, Truth};
 pub use kelir_stats::simulate::Rate;
 
 use crate::answers::Participant;
+use crate::primary::PrimaryEndpoint;
 use crate::report::{LEVEL, REPLICATES, Report};
 use crate::screening::screen;
 use crowd::Crowd;
@@ -40,6 +41,8 @@ pub struct Power {
     pub level: f64,
     /// Resamples of a threshold's bootstrap.
     pub replicates: usize,
+    /// The one test that the study is made to decide, judged by itself; null where the study file names none.
+    pub primary: Option<PrimaryEndpoint>,
     /// By number of participants, rising.
     pub sizes: Vec<Size>,
     /// For each test that asks for something that is there: the fewest participants, of those tried, with which it is found often enough.
@@ -66,10 +69,12 @@ pub struct TestRate {
     pub of: String,
     /// Which test.
     pub test: &'static str,
+    /// Whether it is the primary endpoint; such a row comes first.
+    pub primary: bool,
     /// Whether the test's null hypothesis is true, so that the rate is of false alarms.
     pub null: bool,
     /// How often it is significant at the level `alpha`; in studies where it is not defined it finds nothing. A test that was defined in no
-    /// simulated study of any size (a random intercept with one choice each) is left out.
+    /// simulated study of any size (a random intercept with one choice each) is left out, the primary endpoint never.
     pub rate: Rate,
 }
 
@@ -95,6 +100,8 @@ pub struct Needed {
     pub of: String,
     /// Which test.
     pub test: &'static str,
+    /// Whether it is the primary endpoint.
+    pub primary: bool,
     /// The fewest of those tried; null: more than any.
     pub participants: Option<u32>,
     /// The test's rate there, or at the most that were tried.
@@ -252,7 +259,7 @@ impl Sums {
 
     fn power(&self, design: &Design, claims: &Claims, simulations: u64) -> Power {
         let made: Vec<usize> = (0..claims.tests.len())
-            .filter(|&i| self.sizes.iter().any(|sums| sums.tests[i].defined > 0))
+            .filter(|&i| claims.tests[i].primary || self.sizes.iter().any(|sums| sums.tests[i].defined > 0))
             .collect();
         let sizes: Vec<Size> = design
             .participants
@@ -267,6 +274,7 @@ impl Sums {
                     .map(|(claim, tally)| TestRate {
                         of: claim.of.clone(),
                         test: claim.test,
+                        primary: claim.primary,
                         null: claim.null,
                         rate: tally.rate(),
                     })
@@ -294,7 +302,8 @@ impl Sums {
                 let enough = sizes.iter().find(|size| size.tests[i].rate.rate >= design.power);
                 let rate = enough.or(sizes.last())?.tests[i].rate;
                 let participants = enough.map(|size| size.participants);
-                Some(Needed { of: claim.of.clone(), test: claim.test, participants, rate })
+                let (of, test, primary) = (claim.of.clone(), claim.test, claim.primary);
+                Some(Needed { of, test, primary, participants, rate })
             })
             .collect();
         Power {
@@ -306,6 +315,7 @@ impl Sums {
             power: design.power,
             level: LEVEL,
             replicates: REPLICATES,
+            primary: design.study.primary.clone(),
             sizes,
             needed,
         }

@@ -3,7 +3,8 @@
 use super::findings::PER_TRIAL;
 use super::*;
 use crate::answers::blocks;
-use crate::definition::StudyDefinition;
+use crate::definition::{EquivalenceBound, StudyDefinition};
+use crate::primary::PrimaryTest;
 use kelir_fixtures as fixtures;
 use kelir_reader::Problem;
 
@@ -176,6 +177,94 @@ fn a_test_that_nobody_can_make_is_left_out() {
     assert_eq!(mixed, ["two"]);
     assert_eq!(power.needed.iter().filter(|n| n.test.starts_with("random-intercept")).count(), 1);
     assert!(power.needed.iter().any(|n| n.of == "one" && n.test.starts_with("t-test of")));
+}
+
+fn endpoint(test: PrimaryTest, block: Option<&str>) -> PrimaryEndpoint {
+    PrimaryEndpoint { test, block: block.map(str::to_owned), item: None, compare: None, participants: None }
+}
+
+/// The row of the primary endpoint, which comes first.
+fn first(power: &Power) -> &TestRate {
+    let [found, rest @ ..] = &power.sizes[0].tests[..] else { panic!("no tests") };
+    assert!(found.primary && rest.iter().all(|test| !test.primary));
+    found
+}
+
+#[test]
+fn a_primary_t_test_is_judged_by_itself_and_the_others_without_it() {
+    let blocks = ["one", "two", "three", "four"].map(|id| (id, "pa mc", 6, ""));
+    let text = "participants = [16]\nsimulations = 200\nseed = 9\n[[truth]]\nblocks = [\"one\"]\npreference = 0.62\nicc = 0.05\n\
+                [[truth]]\npreference = 0.5\nicc = 0.05\n";
+    let plain = run(study("", &blocks), text);
+    let mut named = study("", &blocks);
+    named.primary = Some(endpoint(PrimaryTest::TTest, Some("one")));
+    let found = run(named, text);
+    let (primary, before) = (first(&found), &plain.sizes[0]);
+    assert_eq!(
+        (&*primary.of, primary.test, primary.null),
+        ("block one", "two-tailed one-sample t-test", false)
+    );
+    assert_eq!(primary.rate, test(before, "one", "t-test of").rate, "it is not corrected");
+    // Control: corrected for four blocks it would be found less often.
+    assert!(primary.rate.rate > test(before, "one", "t-test, Holm").rate.rate + 0.05, "{primary:?}");
+    // Holm's family is that of the other three: which needs one comparison fewer.
+    let holm =
+        |size: &Size| size.tests.iter().filter(|t| t.test.contains("Holm")).cloned().collect::<Vec<_>>();
+    assert_eq!(holm(&found.sizes[0]).iter().map(|t| &*t.of).collect::<Vec<_>>(), ["two", "three", "four"]);
+    let hits =
+        |size: &Size| holm(size).iter().filter(|t| t.of != "one").map(|t| t.rate.hits).collect::<Vec<_>>();
+    assert!(hits(&found.sizes[0]).iter().zip(hits(before)).all(|(now, then)| *now >= then));
+    assert!(found.needed[0].primary && found.needed.iter().skip(1).all(|needed| !needed.primary));
+    assert!(plain.primary.is_none() && plain.sizes[0].tests.iter().all(|test| !test.primary));
+}
+
+#[test]
+fn a_primary_endpoint_has_the_power_of_its_test() {
+    // A choice each of one item, of which 75% are of the target: power is a sum over the counts that an exact test rejects.
+    let n = 20;
+    let text = format!("participants = [{n}]\nsimulations = 400\nseed = 10\n[[truth]]\npreference = 0.75\n");
+    let mut named = study("", &[("real", "pa mc", 3, "")]);
+    let item = Some("real-1".to_owned());
+    named.primary = Some(PrimaryEndpoint { item, ..endpoint(PrimaryTest::Binomial, Some("real")) });
+    let found = run(named.clone(), &text);
+    let choose = |k: i32| (0..k).map(|j| f64::from(n - j) / f64::from(k - j)).product::<f64>();
+    let chance = |k: i32, p: f64| choose(k) * p.powi(k) * (1.0 - p).powi(n - k);
+    // Of a fair coin the counts as far from the middle as k.
+    let p = |k: i32| {
+        (0..=n).filter(|j| (2 * j - n).abs() >= (2 * k - n).abs()).map(|j| chance(j, 0.5)).sum::<f64>()
+    };
+    let exact: f64 = (0..=n).filter(|k| p(*k) < 0.05).map(|k| chance(k, 0.75)).sum();
+    let primary = first(&found);
+    assert_eq!((&*primary.of, primary.test), ("item real-1 of block real", "exact binomial test"));
+    assert!(plausible(&primary.rate, exact), "{primary:?} and {exact}");
+    // Control: all three choices of everybody are another test.
+    let all = test(&found.sizes[0], "real", PER_TRIAL);
+    assert!(!plausible(&all.rate, exact), "{all:?}");
+
+    // Whether there is anything to be found, by what is tested.
+    let blocks = [("ab", "a b", 2, ""), ("bc", "b c", 2, ""), ("ca", "c a", 2, "")];
+    let qualities =
+        "participants = [12]\nsimulations = 20\nseed = 3\n[[truth]]\njod = { a = 0.0, b = 0.0, c = 1.0 }\n";
+    for (compared, null) in [(["b", "a"], true), (["c", "a"], false)] {
+        let mut named = study("", &blocks);
+        let compare = Some(compared.map(str::to_owned));
+        named.primary = Some(PrimaryEndpoint { compare, ..endpoint(PrimaryTest::Scale, None) });
+        let found = run(named, qualities);
+        let of = if null { "a − b" } else { "a − c" };
+        assert_eq!(
+            (first(&found).null, first(&found).rate),
+            (null, test(&found.sizes[0], of, "difference").rate)
+        );
+    }
+    for (test, null) in [(PrimaryTest::Sign, true), (PrimaryTest::Equivalence, false)] {
+        named.equivalence = Some(EquivalenceBound { within: 0.2, reason: "r".to_owned() });
+        named.primary = Some(endpoint(test, Some("real")));
+        let even = run(
+            named.clone(),
+            "participants = [12]\nsimulations = 20\nseed = 3\n[[truth]]\npreference = 0.5\n",
+        );
+        assert_eq!(first(&even).null, null, "{test:?}");
+    }
 }
 
 #[test]

@@ -22,7 +22,9 @@ const WILCOXON: &str =
     "Wilcoxon, F. (1945). Individual comparisons by ranking methods. Biometrics Bulletin, 1(6), 80–83.";
 const WILSON: &str = "Wilson, E. B. (1927). Probable inference, the law of succession, and statistical inference. Journal of the American \
      Statistical Association, 22(158), 209–212.";
-const DAVISON: &str = "Davison, A. C., & Hinkley, D. V. (1997). Bootstrap methods and their application. Cambridge University Press.";
+const HALL: &str = "Hall, P. (1988). On symmetric bootstrap confidence intervals. Journal of the Royal Statistical Society: Series B, 50(1), 35–45.";
+const HESTERBERG: &str = "Hesterberg, T. C. (2015). What teachers should know about the bootstrap: resampling in the undergraduate statistics curriculum. \
+     The American Statistician, 69(4), 371–386.";
 const FLEISS: &str = "Fleiss, J. L., & Cuzick, J. (1979). The reliability of dichotomous judgments: unequal numbers of judges per subject. \
      Applied Psychological Measurement, 3(4), 537–542.";
 const LIANG: &str = "Liang, K.-Y., & Zeger, S. L. (1986). Longitudinal data analysis using generalized linear models. Biometrika, 73(1), 13–22.";
@@ -169,20 +171,15 @@ fn endpoint(study: &StudyDefinition) -> String {
     let Some(named) = &study.primary else {
         return "The study file names no primary endpoint: no result was singled out beforehand, and none is reported as if it had been.".to_owned();
     };
-    let of = match (&named.block, &named.item, &named.compare) {
-        (Some(block), Some(item), _) => format!("item {item} of block {block}"),
-        (Some(block), None, _) => format!("block {block}"),
-        (None, _, Some([a, b])) => format!("{a} against {b}"),
-        (None, _, None) => String::new(),
-    };
     let planned = match named.participants {
         Some(n) => format!(", to be looked at when {n} participants are judged"),
         None => "; the file does not say after how many participants it is to be looked at".to_owned(),
     };
     format!(
-        "The primary endpoint named in the study file is the {} of {of} at a level of {ALPHA}, uncorrected{planned}. Everything else is secondary, or exploratory where \
+        "The primary endpoint named in the study file is the {} of {} at a level of {ALPHA}, uncorrected{planned}. Everything else is secondary, or exploratory where \
          no test was planned.",
-        named.test.in_words()
+        named.test.in_words(),
+        named.subject()
     )
 }
 
@@ -344,11 +341,12 @@ fn psychometric(text: &mut Text, report: &Report) {
             "Psychometric functions ψ(x) = γ + (1 − γ − λ) F(x) have a guess rate γ of {GUESS} (two alternatives) and a lapse rate λ with the \
              prior Beta(1, 10) where the study file does not fix it; threshold (halfway between guessing and lapsing) and width (from F = 5% to 95%) are \
              given where the posterior under psignifit 4's priors is highest, with {:.0}% posterior intervals and beta-binomial overdispersion; the \
-             threshold also by maximum likelihood with an interval from {REPLICATES} resamples of participants. Goodness of fit is the \
-             deviance against that of simulated observers, each fitted anew.",
+             threshold also by maximum likelihood with an interval from {REPLICATES} resamples of participants: the estimate ± the distance from it \
+             within which as many resamples lie as a normal deviate lies within t × √(n/(n − 1)), t with n − 1 degrees of freedom for n participants. \
+             Goodness of fit is the deviance against that of simulated observers, each fitted anew.",
             100.0 * LEVEL
         ),
-        &[SCHUETT, WICHMANN, DAVISON],
+        &[SCHUETT, WICHMANN, HALL, HESTERBERG],
     );
 }
 

@@ -119,7 +119,6 @@ impl Report {
             judged.pairs = pairs::of(block, &places, &seen, study.seed);
         }
         report.order = order::of(study, participants);
-        report.primary = study.primary.as_ref().map(|named| primary::of(named, &report));
         (report.methods, report.references) = methods::of(study, &report);
         report
     }
@@ -151,7 +150,7 @@ impl Report {
             Ok((scale, consistency)) => (Some(scale), Some(consistency), None),
             Err(note) => (None, None, Some(note)),
         };
-        Report {
+        let mut report = Report {
             primary: None,
             blocks,
             scale,
@@ -161,7 +160,9 @@ impl Report {
             order: None,
             methods: Vec::new(),
             references: Vec::new(),
-        }
+        };
+        report.primary = study.primary.as_ref().map(|named| primary::of(named, &report));
+        report
     }
 }
 

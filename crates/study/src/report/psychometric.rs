@@ -14,6 +14,8 @@ use utoipa::ToSchema;
 
 /// Observers simulated for the goodness of fit.
 const SIMULATIONS: usize = 1000;
+/// From so many participants on resampling them holds what it promises (`kelir bench coverage`).
+const MANY: usize = 5;
 /// Points of the curve that is drawn.
 const CURVE_POINTS: usize = 121;
 
@@ -205,6 +207,7 @@ fn fit(
     let threshold_by_participant = match resampled_threshold(people, &plain, REPLICATES, LEVEL, seed) {
         Ok(found) => {
             notes.extend(bounded(&found));
+            notes.extend(few(people.len()));
             Some(found)
         }
         Err(error) => {
@@ -231,6 +234,17 @@ fn bounded(found: &ResampledThreshold) -> Option<String> {
         format!(
             "In {edge} of {all} resamples of participants the curve ended on the edge of the range that is searched: their answers did not bound it, and \
              the threshold's interval from resampled participants is at least as wide as it says."
+        )
+    })
+}
+
+/// What resamples of few participants make of it.
+fn few(participants: usize) -> Option<String> {
+    (participants < MANY).then(|| {
+        format!(
+            "Resamples of {participants} participants tell too little of others: the threshold's interval from resampled participants holds the truth less often than \
+             {:.0}% of the time.",
+            100.0 * LEVEL
         )
     })
 }

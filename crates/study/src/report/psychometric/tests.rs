@@ -119,6 +119,18 @@ fn the_interval_of_resampled_participants_grows_when_one_answers_all_alike() {
 }
 
 #[test]
+fn few_participants_are_said_to_tell_too_little() {
+    let study = study(&FALLING.replace("falling", "rising"), &[1.0, 2.0, 3.0, 4.0, 5.0]);
+    let told = |participants: usize| {
+        // Right from a level of their own on.
+        let found = report(&study, participants, |i, k| k > i % 3 || (i + k) % 2 == 0);
+        assert!(found.fit.as_ref().unwrap().threshold_by_participant.is_some());
+        found.notes.iter().any(|note| note.starts_with(&format!("Resamples of {participants} participants")))
+    };
+    assert_eq!([2, 4, 5, 12].map(told), [true, true, false, false]);
+}
+
+#[test]
 fn no_answers_and_hopeless_answers_are_notes() {
     let study = study(FALLING, &[1.0, 2.0, 3.0]);
     let empty = report(&study, 0, |_, _| true);
