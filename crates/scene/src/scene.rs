@@ -253,12 +253,13 @@ fn read_scene(root: &Node, label: &str, name: &str, loader: Loader) -> Option<An
             fields::exposure(n)
         },
     );
-    let entries = read_puppets(&mut sections, name, &loader);
+    let mut entries = read_puppets(&mut sections, name, &loader);
     let timeline = match sections.given("timeline", "how the scene moves; without it it stands still") {
         Some(node) => read_timeline(&node, &entries).map(Some),
         None => Some(None),
     };
     sections.done();
+    free_parts(&mut entries, timeline.as_ref().and_then(Option::as_ref));
 
     if let (Some(screen), Some(emitters), Some(ambient), Some(Exposure::Auto)) =
         (&screen, &emitters, &ambient, exposure)
@@ -326,13 +327,27 @@ fn check_light(albedo: &Albedo, emitters: &[Emitter], ambient: &Ambient, white: 
     }
 }
 
+/// Whether a track of the timeline drives `target`.
+fn drives(timeline: Option<&Timeline>, target: &Target) -> bool {
+    timeline.is_some_and(|timeline| timeline.tracks.iter().any(|track| track.target == *target))
+}
+
+/// Parts that a pose names or a track drives reach beyond the drawing's edge, at whatever angle: what is seen of them follows from it smoothly.
+fn free_parts(entries: &mut [Option<Entry>], timeline: Option<&Timeline>) {
+    for (i, entry) in entries.iter_mut().enumerate() {
+        let Some(Entry { posed, puppet, .. }) = entry else { continue };
+        let named = posed.iter().enumerate();
+        let posed: Vec<bool> =
+            named.map(|(part, named)| *named || drives(timeline, &Target::Pose(i, part))).collect();
+        puppet.figure.free(&posed);
+    }
+}
+
 /// Which parts of puppet `i` the timeline may move.
 fn moving_parts(timeline: Option<&Timeline>, i: usize, puppet: &Puppet) -> Vec<bool> {
-    let tracks = timeline.map_or(&[][..], |t| &t.tracks);
-    let turned = tracks.iter().any(|t| t.target == Target::Rotate(i));
-    let posed: Vec<bool> = (0..limits::PARTS)
-        .map(|part| turned || tracks.iter().any(|t| t.target == Target::Pose(i, part)))
-        .collect();
+    let turned = drives(timeline, &Target::Rotate(i));
+    let posed: Vec<bool> =
+        (0..limits::PARTS).map(|part| turned || drives(timeline, &Target::Pose(i, part))).collect();
     puppet.figure.followers(&posed)
 }
 

@@ -23,7 +23,7 @@ pub(crate) struct Figure {
     /// Pivots in lattice coordinates.
     parts: Vec<Joint>,
     textures: Vec<Texture>,
-    /// The same without the drawing's edge, where a part that turns reaches beyond it: once turned, it is drawn whole.
+    /// The same without the drawing's edge, where a part that may turn reaches beyond it; [`Figure::free`] takes what is posed from here.
     whole: Vec<Option<Texture>>,
     channels: usize,
     bits: u32,
@@ -108,19 +108,20 @@ impl Figure {
         }
     }
 
-    /// What is drawn of a part in a pose: all of it once it is turned, else what lies on the drawing.
-    fn texture(&self, part: usize, pose: &Pose) -> &Texture {
-        let turned = |p: usize| pose.parts_deg.get(p).is_some_and(|degrees| degrees.rem_euclid(360.0) != 0.0);
-        match &self.whole[part] {
-            Some(whole) if self.chain(part).any(turned) => whole,
-            _ => &self.textures[part],
+    /// Lets what the scene poses, and all that hangs on it, be drawn beyond the drawing's edge, at every angle; all else stays cut there.
+    pub(crate) fn free(&mut self, posed: &[bool]) {
+        let free = self.followers(posed);
+        let parts = self.textures.iter_mut().zip(std::mem::take(&mut self.whole)).zip(free);
+        for ((texture, whole), free) in parts {
+            if let Some(whole) = whole.filter(|_| free) {
+                *texture = whole;
+            }
         }
     }
 
     fn forget(&mut self, part: usize) {
         // The bounds are still needed for the extent.
         self.textures[part].opacity = Vec::new();
-        self.whole[part].iter_mut().for_each(|t| t.opacity = Vec::new());
     }
 
     /// 1 or 3.
@@ -156,7 +157,7 @@ impl Figure {
     pub(crate) fn extent(&self, pose: &Pose) -> Rect {
         let rest = Rect::of_size(self.lattice.columns, self.lattice.rows);
         let parts = (0..self.textures.len())
-            .map(|part| self.motion(part, pose).bounds(self.texture(part, pose).rect))
+            .map(|part| self.motion(part, pose).bounds(self.textures[part].rect))
             .fold(Rect::EMPTY, Rect::union);
         let turned = Rigid::turn([0.0; 2], pose.rotate_deg) != Rigid::IDENTITY;
         if turned && !parts.is_empty() { parts } else { rest.union(parts) }
@@ -182,7 +183,7 @@ impl Figure {
         let still: Vec<usize> = (0..self.textures.len()).filter(|&p| !self.moving[p]).collect();
         let placed: Vec<Placed> = still
             .iter()
-            .map(|&p| Placed { texture: self.texture(p, pose), motion: self.motion(p, pose) })
+            .map(|&p| Placed { texture: &self.textures[p], motion: self.motion(p, pose) })
             .collect();
         let rect = placed.iter().map(|p| p.motion.bounds(p.texture.rect)).fold(Rect::EMPTY, Rect::union);
         self.plate = (!rect.is_empty()).then(|| match self.channels {
@@ -224,7 +225,7 @@ impl Figure {
     fn draw<C: Code>(&self, extent: Rect, pose: &Pose, mut codes: Vec<C>) -> Vec<C> {
         let parts: Vec<Placed> = (0..self.textures.len())
             .filter(|&p| self.moving[p])
-            .map(|p| Placed { texture: self.texture(p, pose), motion: self.motion(p, pose) })
+            .map(|p| Placed { texture: &self.textures[p], motion: self.motion(p, pose) })
             .collect();
         match self.channels {
             1 => compose::<C, 1>(extent, self.plate.as_ref().map(Still::plate), &parts, &mut codes),

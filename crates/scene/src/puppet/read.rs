@@ -19,6 +19,8 @@ pub(crate) struct Entry<'a> {
     pub position: Option<Node<'a>>,
     pub tilt: Option<Node<'a>>,
     pub setting: Setting,
+    /// Which parts its `pose` names.
+    pub posed: Vec<bool>,
     pub puppet: Puppet,
 }
 
@@ -102,8 +104,8 @@ pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<E
     let parts = art.as_ref().map(|a| a.parts.as_slice());
     let pose = fields.optional(
         "pose",
-        "part = degrees about its pivot, counter-clockwise; parts that are not named rest",
-        vec![0.0; parts.map_or(0, <[Part]>::len)],
+        "part = degrees about its pivot, counter-clockwise; parts that are not named rest, cut at the drawing's edge",
+        vec![None; parts.map_or(0, <[Part]>::len)],
         |n| read_pose(n, parts),
     );
     let texels = fields.given("texels", "rows of its grid at rest; without it 1024, or a PNG's own");
@@ -135,18 +137,21 @@ pub(crate) fn read<'a>(node: &Node<'a>, name: &str, loader: &Loader) -> Option<E
         _ => {}
     }
     let figure = rasterise(&image_node, &art, lattice, Surface { translucent, alpha, bits })?;
+    let pose = pose?;
+    let parts_deg = pose.iter().map(|degrees| degrees.unwrap_or(0.0)).collect();
     let setting = Setting {
         position_m: DVec3::from(position_m?),
         tilt_deg: tilt_deg?,
-        pose: Pose { parts_deg: pose?, rotate_deg: rotate_deg? },
+        pose: Pose { parts_deg, rotate_deg: rotate_deg? },
     };
+    let posed = pose.iter().map(Option::is_some).collect();
     let texel_m = height_m / lattice.rows as f64;
     let puppet = Puppet { image: image?, parts: art.parts, figure, texel_m };
-    Some(Entry { node: node.clone(), position, tilt: tilt_node, setting, puppet })
+    Some(Entry { node: node.clone(), position, tilt: tilt_node, setting, posed, puppet })
 }
 
 /// `{ part = degrees }`; without a known puppet only the values' types are checked.
-fn read_pose(node: &Node, parts: Option<&[Part]>) -> Option<Vec<f64>> {
+fn read_pose(node: &Node, parts: Option<&[Part]>) -> Option<Vec<Option<f64>>> {
     let entries = node.entries(limits::PARTS)?;
     let Some(parts) = parts else {
         entries.iter().for_each(|(_, value)| {
@@ -154,11 +159,11 @@ fn read_pose(node: &Node, parts: Option<&[Part]>) -> Option<Vec<f64>> {
         });
         return None;
     };
-    let mut pose = vec![0.0; parts.len()];
+    let mut pose = vec![None; parts.len()];
     let mut sound = true;
     for (name, value) in entries {
         match find_part(&value, name, parts).and_then(|p| Some((p, pose_deg(&value, &parts[p])?))) {
-            Some((part, degrees)) => pose[part] = degrees,
+            Some((part, degrees)) => pose[part] = Some(degrees),
             None => sound = false,
         }
     }

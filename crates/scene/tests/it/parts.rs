@@ -1,9 +1,11 @@
 //! A part is the whole drawing with the others hidden, and turns about the point that its manifest names: over generated drawings.
 
+use std::collections::HashMap;
+
 use proptest::prelude::*;
 
 use crate::support::{Files, SCENE, files, parse};
-use kelir_scene::{Plane, Scene};
+use kelir_scene::{Masks, Plane, Scene};
 
 /// How a drawing says how large it is: attributes of its root, and its view box's corner and size in user units.
 #[derive(Clone, Debug)]
@@ -198,18 +200,41 @@ fn figure(arm: &str) -> String {
     )
 }
 
-/// What lies beyond the drawing's edge is cut off at rest, and is there when a pose brings it in.
+/// What lies beyond the drawing's edge is cut off of a part that nothing poses; of one that a pose names or a track drives, and of what hangs on it,
+/// it is there at every angle.
 #[test]
-fn what_lies_beyond_the_edge_comes_in() {
-    let svg = figure(r#"<g id="arm"><rect x="50" y="40" width="90" height="8"/></g>"#);
-    let body = 20.0 * 40.0;
-    let shadow_of = |pose: &str| shadow(&plane(&drawn(&svg, ARM, pose).unwrap())).0;
-    assert!((shadow_of("") - (body + 50.0 * 8.0)).abs() < 2.0, "cut at the edge");
-    assert!(
-        (shadow_of("pose = { arm = 150 }") - (body + 90.0 * 8.0)).abs() < 4.0,
-        "{}",
-        shadow_of("pose = { arm = 150 }")
-    );
+fn what_is_posed_reaches_beyond_the_edge() {
+    let hand = "[[parts]]\nid = \"hand\"\nparent = \"arm\"\n";
+    let svg = figure(
+        r#"<g id="arm"><rect x="50" y="40" width="90" height="8"/></g><g id="hand"><rect x="90" y="20" width="20" height="8"/></g>"#,
+    )
+    .replace("height=\"40\"", "height=\"60\"");
+    let (body, cut, whole) = (20.0 * 40.0, 50.0 * 8.0 + 10.0 * 8.0, 90.0 * 8.0 + 20.0 * 8.0);
+    let shadow_of = |lines: &str, after: &str| {
+        let scene = drawn(&svg, &format!("{ARM}{hand}"), lines).unwrap();
+        assert!(after.is_empty() || scene.timeline().is_some());
+        shadow(&plane(&scene)).0
+    };
+    for (lines, expected) in [
+        ("", body + cut),
+        ("rotate_deg = 90", body + cut),
+        ("pose = {}", body + cut),
+        ("pose = { arm = 0.0 }", body + whole),
+        ("pose = { arm = 1e-9 }", body + whole),
+        ("pose = { arm = 150.0 }", body + whole),
+        ("pose = { arm = 360.0 }", body + whole),
+    ] {
+        let found = shadow_of(lines, "");
+        assert!((found - expected).abs() < 2.0, "{found}, not {expected}: {lines:?}");
+    }
+    // A track poses it as well, from the start.
+    let timeline = track("arm", &[(0.0, 0.0), (1.0, 30.0)]);
+    let [cut_off, driven] =
+        ["", &timeline].map(|lines| plane(&drawn(&svg, &format!("{ARM}{hand}"), lines).unwrap()));
+    assert!((shadow(&driven).0 - (body + whole)).abs() < 0.1, "{}", shadow(&driven).0);
+    // Control: `apart`, which finds that nothing pops, would.
+    let found = apart(&cut_off, &driven);
+    assert!((found - (whole - cut)).abs() < 0.1, "{found}");
 }
 
 #[test]
@@ -247,4 +272,61 @@ fn parts_are_found_by_what_editors_call_them() {
     let nested = figure("").replace("<g id=\"body\">", &format!("<g id=\"body\"><g id=\"arm\">{square}</g>"));
     let nested = drawn(&nested, ARM, "").unwrap_err();
     assert!(nested.contains("part \"arm\" within part \"body\""), "{nested}");
+}
+
+/// A timeline that turns a part, with keys of [seconds, degrees].
+fn track(part: &str, keys: &[(f64, f64)]) -> String {
+    let keys: Vec<String> =
+        keys.iter().map(|(t, degrees)| format!("{{ t = {t:?}, value = {degrees:?} }}")).collect();
+    format!(
+        "[timeline]\nfps = 1\nseconds = 2.0\n[[timeline.tracks]]\ntarget = \"puppets[0].pose.{part}\"\nkeys = [{}]\n",
+        keys.join(", ")
+    )
+}
+
+/// What two masks differ by, in texels of opacity, wherever their grids end: both lie on one lattice, and beyond them all is clear.
+fn apart(a: &Plane, b: &Plane) -> f64 {
+    let texel_m = a.size_m[0] / a.mask.width as f64;
+    let mut signed = HashMap::new();
+    for (plane, sign) in [(a, 1.0), (b, -1.0)] {
+        let (w, h) = (plane.mask.width, plane.mask.height);
+        let left = ((plane.centre_m.x - 0.5 * plane.size_m[0]) / texel_m).round() as i64;
+        let top = ((plane.centre_m.y + 0.5 * plane.size_m[1]) / texel_m).round() as i64;
+        for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+            *signed.entry((left + x as i64, top - y as i64)).or_insert(0.0) +=
+                sign * (1.0 - plane.mask.transmittance(0, x, y));
+        }
+    }
+    signed.values().map(|difference: &f64| difference.abs()).sum()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+    /// No part pops as a timeline turns it: in an angle ε its outline sweeps at most its length times ε times its distance from the joint, wherever
+    /// the drawing ends.
+    #[test]
+    fn a_small_turn_is_a_small_change(
+        left in -60.0..130.0f64, top in -60.0..130.0f64, w in 5.0..60.0f64, h in 5.0..60.0f64,
+        rest in prop::sample::select(vec![0.0, 40.0]), log_turn in -5.0..0.0f64,
+    ) {
+        let svg = figure(&format!(
+            "<g id=\"arm\"><rect x=\"{left}\" y=\"{top}\" width=\"{w}\" height=\"{h}\"/></g>"
+        ));
+        let turn = 10f64.powf(log_turn);
+        let timeline = track("arm", &[(0.0, rest), (1.0, rest + turn)]);
+        let scene = drawn(&svg, ARM, &format!("bits = 16\n{timeline}")).unwrap();
+        let mut masks = Masks::default();
+        let [before, after] = [0.0, 1.0].map(|time_s| scene.theatre_at(time_s, &mut masks).planes.remove(0));
+        let [x, y] = [left - 50.0, top - 44.0];
+        let reach = x.abs().max((x + w).abs()).hypot(y.abs().max((y + h).abs()));
+        // Resampling and rounding to codes may add as much again.
+        let most = 2.0 * 2.0 * (w + h) * reach * turn.to_radians();
+        let codes = f64::from(u16::MAX).recip() * (w + 2.0) * (h + 2.0);
+        let found = apart(&before, &after);
+        prop_assert!(found <= most + codes, "{found}, at most {most} by {turn}° of {svg}");
+        // It is all there from the start.
+        let seen = shadow(&before).0;
+        prop_assert!((seen - (w * h + 800.0)).abs() < 1.0 || rest != 0.0 || left < 60.0 && left + w > 40.0 && top + h > 60.0, "{seen}");
+    }
 }
