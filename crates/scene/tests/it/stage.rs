@@ -210,6 +210,9 @@ fn each_rule_of_a_stage_is_kept() {
         (mesh, "file = \"../meshes/broken.obj\"", "meshes/broken.obj: line 1"),
         (mesh, "file = \"../meshes/faulty.obj\"", "repair = true mends"),
         (mesh, "file = \"../meshes/far.obj\"", "coordinates are from −1e6 to 1e6"),
+        (mesh, "", "stage.objects[1]: a mesh has a file or a model"),
+        (mesh, "model = \"hair\"", "must be one of hare, amphora and horse (did you mean hare?)"),
+        (mesh, "file = \"../meshes/tetra.obj\"\nmodel = \"hare\"", "of a file or a model, not of both"),
         ("unit = \"cm\"", "unit = \"yd\"", "must be one of m, cm, mm and in"),
         ("scale = 2", "scale = 0", "a scale is from 1e-6 to 1e6"),
         ("normals = \"flat\"", "level = 5", "stage.objects[1].level = 5: a level has from 4 to 4 triangles"),
@@ -247,6 +250,15 @@ fn each_rule_of_a_stage_is_kept() {
 fn a_stage_is_no_theatre() {
     let said = Scene::parse("scenes/test.toml", STAGE, &files()).unwrap_err().to_string();
     assert!(said.contains("subject = \"stage\": a theatre is asked for here, not a stage"), "{said}");
+}
+
+#[test]
+fn a_model_that_ships_stands_there_by_its_name() {
+    let toml = STAGE.replace("file = \"../meshes/tetra.obj\"", "model = \"hare\"");
+    let scene = stage(&toml);
+    let Form::Mesh(mesh) = &scene.still().objects[1].form.clone() else { panic!("a mesh") };
+    assert!((68_000..71_000).contains(&mesh.seen.triangles.len()), "{}", mesh.seen.triangles.len());
+    assert_ne!(scene.sha256(), stage(&toml.replace("hare", "horse")).sha256());
 }
 
 #[test]

@@ -36,11 +36,17 @@ pub(super) fn mesh(fields: &mut Fields, name: &str, loader: &Loader, made: &mut 
         Node::boolean,
     );
     let smooth = smooth(fields);
-    let file = fields.need("file", "the mesh: .obj, .ply, .gltf or .glb", |n| Some(n.clone()))?;
+    let file = fields.given("file", "the mesh: .obj, .ply, .gltf or .glb; or a model");
+    let model = fields.given("model", "a model that ships, by its name (`kelir mesh list`); or a file");
     let level = fields.given("level", "so many triangles are seen: it is simplified to them; without it all");
     let caster = fields
         .given("caster_level", "so many triangles cast the shadow on other things; without it what is seen");
-    let full = whole(&file, name, loader, unit?, mended?)?;
+    let full = match (&file, &model) {
+        (Some(file), None) => whole(file, name, loader, unit?, mended?)?,
+        (None, Some(model)) => shipped(model, made)?,
+        (Some(_), Some(model)) => return model.refuse("a mesh is of a file or a model, not of both"),
+        (None, None) => return fields.node().refuse("a mesh has a file or a model"),
+    };
     let simplified = |node: &Option<Node>, else_: &Arc<Mesh>, made: &mut Made| match node {
         Some(node) => simplify(node, &full, made),
         None => Some(else_.clone()),
@@ -53,6 +59,14 @@ pub(super) fn mesh(fields: &mut Fields, name: &str, loader: &Loader, made: &mut 
         _ => simplified(&caster, &seen, made),
     };
     Some(Form::Mesh(MeshForm { seen, caster: caster?, smooth: smooth? }))
+}
+
+/// A model that ships.
+fn shipped(node: &Node, hashes: &mut Made) -> Option<Arc<Mesh>> {
+    let model = node.choice(&kelir_mesh::Made::ALL.map(|made| (made.name(), made)))?.make();
+    let mesh = model.merged(&model.rest());
+    hashes.insert(node.path().to_owned(), mesh.hash());
+    Some(Arc::new(mesh))
 }
 
 /// The file's mesh, sound.

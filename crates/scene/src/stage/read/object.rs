@@ -19,8 +19,9 @@ enum Shape {
 }
 
 /// Keys that belong to some shapes alone, and to which.
-const OWN: [(&str, &[Shape], &str); 12] = [
+const OWN: [(&str, &[Shape], &str); 13] = [
     ("file", &[Shape::Mesh], "a mesh"),
+    ("model", &[Shape::Mesh], "a mesh"),
     ("unit", &[Shape::Mesh], "a mesh"),
     ("repair", &[Shape::Mesh], "a mesh"),
     ("level", &[Shape::Mesh], "a mesh"),
