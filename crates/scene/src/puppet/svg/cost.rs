@@ -143,6 +143,7 @@ fn legs(path: &Path) -> impl Iterator<Item = [Point; 2]> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 mod tests {
     use super::*;
     use resvg::usvg::Options;

@@ -184,6 +184,7 @@ fn with_handles(path: &Path) -> Option<Path> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that fails here says where")]
 mod tests {
     use super::*;
     use crate::puppet::svg::raster::area::{Desk, Shape};
