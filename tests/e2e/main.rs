@@ -5,6 +5,7 @@ mod adaptive;
 mod check;
 mod cli;
 mod doors;
+mod drawings;
 mod film;
 mod front;
 mod gpu;

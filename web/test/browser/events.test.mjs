@@ -77,13 +77,24 @@ test("a pinch is logged as what it does to the picture's size", async (t) => {
 test("full screen and the way a display is held are logged", async (t) => {
   const v = await visit(t, { options: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true } });
   await begin(v);
+  // What can be asked changes before its event comes: each step waits for the event, which the page's own log has heard before this list.
+  await v.page.evaluate(() => {
+    globalThis.heard = [];
+    for (const [target, event] of [
+      [screen.orientation, "change"],
+      [document, "fullscreenchange"],
+    ])
+      target.addEventListener(event, () => globalThis.heard.push(event));
+  });
+  const heard = (count) => v.page.waitForFunction((count) => globalThis.heard.length === count, count);
   const cdp = await v.context.newCDPSession(v.page);
   await cdp.send("Emulation.setDeviceMetricsOverride", { width: 844, height: 390, deviceScaleFactor: 1, mobile: true, screenOrientation: { type: "landscapePrimary", angle: 90 } });
   await v.page.waitForFunction(() => innerWidth === 844);
+  await heard(1);
   await v.page.evaluate(() => document.documentElement.requestFullscreen());
-  await v.page.waitForFunction(() => document.fullscreenElement !== null);
+  await heard(2);
   await v.page.evaluate(() => document.exitFullscreen());
-  await v.page.waitForFunction(() => document.fullscreenElement === null);
+  await heard(3);
   await painted(v.page);
   await v.page.keyboard.press("ArrowLeft");
   await position(v.page, 1);

@@ -25,9 +25,9 @@ pub(crate) enum Command {
         /// Print one JSON document.
         #[arg(long)]
         json: bool,
-        /// Write the drawing of the one scene file that is refused or warned about, mended so that it is accepted and looks the same, and say what was
-        /// changed; nothing is written where that can't be done.
-        #[arg(long, value_name = "OUT.svg", conflicts_with = "json")]
+        /// Write the drawings of the one scene file that are refused or warned about, mended so that they are accepted and look the same, and say what
+        /// was changed: one as this file, several by their names into this folder; nothing is written where that can't be done.
+        #[arg(long, value_name = "OUT", conflicts_with = "json")]
         fix_drawing: Option<PathBuf>,
     },
     /// List the scenes that ship: any of them may be drawn by its name.
@@ -69,10 +69,10 @@ fn check(files: &[PathBuf], json: bool) -> Result<()> {
     checked.finish()
 }
 
-/// Mends the one drawing of a scene that needs it.
+/// Mends the drawings of a scene that need it: all of them, or nothing is written.
 fn fix_drawing(files: &[PathBuf], out: &Path) -> Result<()> {
     let [scene] = files else {
-        return Err(bad_input("--fix-drawing mends a drawing of one scene file: name one"));
+        return Err(bad_input("--fix-drawing mends the drawings of one scene file: name one"));
     };
     if !shipped::is_file(scene) {
         return Err(bad_input(format!(
@@ -80,33 +80,63 @@ fn fix_drawing(files: &[PathBuf], out: &Path) -> Result<()> {
             scene.display()
         )));
     }
-    let mut mendings = kelir_scene::mend(scene).map_err(bad_input)?;
-    let Some(Mending { drawing, result }) = mendings.pop() else {
+    let folder = out.is_dir() || out.to_string_lossy().ends_with(std::path::is_separator);
+    file::try_writing(&if folder { out.join("drawing.svg") } else { out.to_owned() })?;
+    let mendings = kelir_scene::mend(scene).map_err(bad_input)?;
+    if mendings.is_empty() {
         return print(&format!("{}: no drawing needs mending; nothing is written", scene.display()));
-    };
-    if !mendings.is_empty() {
-        let all: Vec<String> =
-            mendings.iter().map(|m| &m.drawing).chain([&drawing]).map(|d| d.display().to_string()).collect();
-        return Err(bad_input(format!("{} need mending: check scenes of one of them each", all.join(", "))));
     }
-    let label = drawing.display();
-    let mended = result.map_err(|wrong| {
-        let wrong: Vec<String> = wrong.iter().map(|rule| format!("{label}: {rule}")).collect();
-        bad_input(format!(
+    let targets = targets(scene, &mendings, out, folder).map_err(bad_input)?;
+    let wrong: Vec<String> = mendings.iter().flat_map(complaints).collect();
+    if !wrong.is_empty() {
+        return Err(bad_input(format!(
             "{}\nthis can't be mended without changing what is seen; nothing is written",
             wrong.join("\n")
-        ))
-    })?;
-    let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
-    if same(out, &drawing) {
-        return Err(bad_input(format!(
-            "{} is the drawing itself, which is kept: name another file",
-            out.display()
         )));
     }
-    file::write_atomic(out, mended.svg.as_bytes())?;
-    print(&format!("{}: {label}, mended:", out.display()))?;
-    mended.changes.iter().try_for_each(|change| print(&format!("  {change}")))
+    for (Mending { drawing, result }, target) in mendings.iter().zip(&targets) {
+        let Ok(mended) = result else { continue };
+        file::write_atomic(target, mended.svg.as_bytes())?;
+        print(&format!("{}: {}, mended:", target.display(), drawing.display()))?;
+        mended.changes.iter().try_for_each(|change| print(&format!("  {change}")))?;
+    }
+    Ok(())
+}
+
+/// Why a drawing can't be mended.
+fn complaints(Mending { drawing, result }: &Mending) -> impl Iterator<Item = String> {
+    let wrong = result.as_ref().err().into_iter().flatten();
+    wrong.map(move |rule| format!("{}: {rule}", drawing.display()))
+}
+
+/// Where each mended drawing is to go. Errors: several for one file, or in the place of what the scene is made of.
+fn targets(scene: &Path, mendings: &[Mending], out: &Path, folder: bool) -> Result<Vec<PathBuf>, String> {
+    let drawings = || mendings.iter().map(|mending| mending.drawing.as_path());
+    if !folder && mendings.len() > 1 {
+        let all: Vec<String> = drawings().map(|drawing| drawing.display().to_string()).collect();
+        return Err(format!(
+            "{} need mending: name a folder for them, --fix-drawing FOLDER/",
+            all.join(", ")
+        ));
+    }
+    let target = |drawing: &Path| match drawing.file_name().filter(|_| folder) {
+        Some(name) => out.join(name),
+        None => out.to_owned(),
+    };
+    let targets: Vec<PathBuf> = drawings().map(target).collect();
+    let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+    for (k, target) in targets.iter().enumerate() {
+        if drawings().chain([scene]).any(|kept| same(target, kept)) {
+            return Err(format!("{} is a file of the scene, which is kept: name another", target.display()));
+        }
+        if targets[..k].contains(target) {
+            return Err(format!(
+                "two drawings would be {}: mend scenes of one of them each",
+                target.display()
+            ));
+        }
+    }
+    Ok(targets)
 }
 
 fn name(file: &Path) -> String {

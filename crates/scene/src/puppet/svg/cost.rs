@@ -141,3 +141,35 @@ fn legs(path: &Path) -> impl Iterator<Item = [Point; 2]> {
         legs
     })
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that fails here says where")]
+mod tests {
+    use super::*;
+    use resvg::usvg::Options;
+
+    /// The cost on 1,000 rows of a zigzag of `lines` between a drawing's top and bottom.
+    fn zigzag(lines: usize, paint: &str) -> Cost {
+        let corners: String = (0..=lines).map(|k| format!("L{} {}", k % 97, 100 * (k % 2))).collect();
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='M0 0{corners}Z' {paint}/></svg>"
+        );
+        of_tree(&Tree::from_str(&svg, &Options::default()).unwrap(), 1000)
+    }
+
+    /// Each line crosses each row once, and has its corner; a stroke has two sides beside the fill. 67,000,000 or so are too many.
+    #[test]
+    fn rows_that_outlines_cross_are_counted_and_bounded() {
+        for (paint, outlines) in [("", 1.0), ("stroke='#000'", 3.0), ("fill='none' stroke='#000'", 2.0)] {
+            let crossed = zigzag(1000, paint).crossed / (1000.0 * 1000.0);
+            assert!((crossed / outlines - 1.0).abs() < 0.02, "{crossed} of {outlines}");
+        }
+        assert!(zigzag(60_000, "").check().is_ok());
+        let rule = zigzag(70_000, "").check().unwrap_err();
+        assert!(
+            rule.contains("crosses rows of texels 7.1e7 times") && rule.ends_with("at most 6.7e7"),
+            "{rule}"
+        );
+        assert!(zigzag(30_000, "stroke='#000'").check().is_err());
+    }
+}

@@ -11,6 +11,9 @@ use resvg::usvg::FillRule;
 
 use super::outline::Edge;
 
+#[cfg(test)]
+mod tests;
+
 /// Pieces that a cluster of a row may be cut to for each of its edges; what needs more is sampled at as many heights.
 const CUTS: usize = 64;
 /// Crossings that a cluster of a row is cut at.
