@@ -392,6 +392,20 @@ mod tests {
         );
     }
 
+    /// A thin ring, which the simplifier folds and pinches readily.
+    #[test]
+    fn a_stretch_is_gone_again_until_the_surface_hangs_together() {
+        let mut ring = torus(90, 20);
+        ring.positions.iter_mut().for_each(|position| position[1] *= 0.002);
+        let targets: Vec<usize> = ladder(3600, 40, 40).into_iter().filter(|target| *target >= 70).collect();
+        for attributes in [Attributes::None, Attributes::Normals] {
+            for level in levels(&ring, &targets, attributes).unwrap() {
+                assert_eq!((level.missed, &level.lost), (None, &Vec::new()), "{}", level.target);
+                assert!(level.report.is_solid() && level.report.euler == 0);
+            }
+        }
+    }
+
     #[test]
     fn what_the_whole_one_lacked_is_no_loss() {
         let two = Report { crowded_edges: 2, triangles: 9, ..Report::default() };
