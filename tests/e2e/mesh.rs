@@ -114,6 +114,8 @@ fn levels_are_written_measured_and_kept() {
     assert!(table.contains("as before") && table.contains("guided by positions and normals"), "{table}");
     let said = refused(&["mesh", "lod", "hare", "-o", out, "--triangles", "100,200"]);
     assert!(said.contains("200 triangles: each level has fewer than the one before it, here 100"), "{said}");
+    let said = refused(&["mesh", "lod", "hare", "-o", out, "--steps", "3", "--min", "99999"]);
+    assert!(said.contains("min = 99999: a level has fewer triangles than the mesh, here 68960"), "{said}");
     assert!(Path::new(out).join("levels.json").exists());
 }
 

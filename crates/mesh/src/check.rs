@@ -80,7 +80,27 @@ impl Report {
 
     /// What is wrong, each with its count: `3 zero-area faces`. An edge that bounds the surface and vertices that are not used are no faults.
     pub fn faults(&self) -> Vec<String> {
-        let counts = [
+        self.faults_beyond(&Report::default())
+    }
+
+    /// What is wrong here more often than there.
+    pub(crate) fn faults_beyond(&self, other: &Report) -> Vec<String> {
+        let more = self
+            .fault_counts()
+            .into_iter()
+            .zip(other.fault_counts())
+            .filter(|(here, there)| here.0 > there.0);
+        let mut faults: Vec<String> = more
+            .map(|((count, one, many), _)| format!("{count} {}", if count == 1 { one } else { many }))
+            .collect();
+        if self.triangles == 0 {
+            faults.push("no triangles".to_owned());
+        }
+        faults
+    }
+
+    fn fault_counts(&self) -> [(usize, &'static str, &'static str); 8] {
+        [
             (
                 self.out_of_range,
                 "triangle with an index out of range",
@@ -93,15 +113,7 @@ impl Report {
             (self.inconsistent_edges, "edge between faces wound apart", "edges between faces wound apart"),
             (self.pinched_vertices, "vertex with more than one fan", "vertices with more than one fan"),
             (self.inward_parts, "part inside out", "parts inside out"),
-        ];
-        let found = counts.iter().filter(|(count, ..)| *count > 0);
-        let mut faults: Vec<String> = found
-            .map(|(count, one, many)| format!("{count} {}", if *count == 1 { one } else { many }))
-            .collect();
-        if self.triangles == 0 {
-            faults.push("no triangles".to_owned());
-        }
-        faults
+        ]
     }
 }
 

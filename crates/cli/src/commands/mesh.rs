@@ -311,6 +311,10 @@ fn lod(args: &LodArgs) -> Result<()> {
         None => args.triangles.clone(),
         Some(steps) => ladder(mesh.triangles.len(), steps as usize, args.min),
     };
+    if targets.is_empty() {
+        let rule = format!("a level has fewer triangles than the mesh, here {}", mesh.triangles.len());
+        return Err(bad_input(format!("min = {}: {rule}", args.min)));
+    }
     let key = levels_key(&mesh, &targets, attributes);
     if let Some(known) = known(&args.output, &key) {
         return tell(&known, args, "as before");
