@@ -42,7 +42,7 @@ fn the_preimage_is_the_contracts() {
         r#"{"backend":"cpu","camera":{"defocus_px":0.8,"jpeg_quality":90,"noise":0.012,"seed":1,"vignette":0.25},"#,
         r#""exposure":"still","knobs":{"dome_steps":32,"map_size":1024,"split":1,"strips":64,"variant":"exact","weights":"area"},"#,
         r#""output":"still","pixel":"area","reference":{"knobs":{"seed":1,"spp":64},"revision":3,"technique":"mc"},"#,
-        r#""revision":1,"scene":"5ce7e0000000000000000000000000000000000000000000000000000000cafe","shared_revision":2,"#,
+        r#""revision":1,"scene":"5ce7e0000000000000000000000000000000000000000000000000000000cafe","shared_revision":3,"#,
         r#""size":[96,54],"technique":"pa","time_s":0.5}"#
     );
     assert_eq!(
@@ -52,7 +52,7 @@ fn the_preimage_is_the_contracts() {
     // sha256sum of that text.
     assert_eq!(
         hex::encode(Sha256::digest(preimage)),
-        "d0b02e720d72f262f91eaac73c2b085df7b3bab98185c10e303a54aa1ee8e099"
+        "e5c81f89e43185963667d4e27536a612488dd9e4312ce7e737780b8a8df3a2d6"
     );
 }
 
