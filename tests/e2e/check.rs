@@ -140,7 +140,7 @@ fn what_cannot_be_drawn_is_found_by_drawing_it_small() {
     let data = small_data();
     // Good by each file alone: the size is not the screen's, a dome is nothing for shadow maps, a film tilts later.
     edit(data.path(), "studies/small.toml", "size = [64, 36]", "size = [64, 64]");
-    assert!(wrong(data.path(), "small").contains("size = \"64x64\": the screen is"));
+    assert!(wrong(data.path(), "small").contains("size = \"64x64\": what is shown is"));
     edit(data.path(), "studies/small.toml", "size = [64, 64]", "size = [64, 36]");
     edit(data.path(), "studies/small.toml", "technique = \"mc\"\nspp = 16", "technique = \"pcss\"");
     edit(data.path(), "scenes/near.toml", "model = \"none\"", "model = \"dome\"\nradiance = 1.0");

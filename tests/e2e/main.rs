@@ -17,6 +17,7 @@ mod mesh;
 mod outputs;
 mod report;
 mod soak;
+mod stage;
 mod survey;
 mod trouble;
 mod trying;

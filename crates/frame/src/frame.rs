@@ -31,7 +31,7 @@ pub struct View {
 }
 
 impl View {
-    /// Checks the view against the screen's sides, metres: sizes above zero, and square pixels to within half a pixel.
+    /// Checks the view against the sides of what is shown, in any unit: sizes above zero, and square pixels to within half a pixel.
     ///
     /// # Errors
     /// [`RenderError::View`]: which size, and which it would have to be.
@@ -43,7 +43,7 @@ impl View {
         let ideal = w as f64 * screen_h / screen_w;
         if (ideal - h as f64).abs() > 0.5 && (h as f64 * screen_w / screen_h - w as f64).abs() > 0.5 {
             return Err(RenderError::View(format!(
-                "size = {w}x{h}: the screen is {screen_w} m x {screen_h} m, so {w} pixels of width need {} of height",
+                "size = {w}x{h}: what is shown is as wide and high as {screen_w} by {screen_h}, so {w} pixels of width need {} of height",
                 ideal.round().max(1.0)
             )));
         }

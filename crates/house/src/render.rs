@@ -101,7 +101,7 @@ pub(crate) fn rehearse(task: &Task<'_>, scene: AnyScene) -> (AnyScene, Result<()
 fn rehearse_one<S: Staged>(task: &Task<'_>, scene: S) -> (S, Result<(), RenderError>) {
     match job(task) {
         Ok(job) if task.rank > 0 => {
-            let possible = job.view.check(scene.still().sides_m());
+            let possible = job.view.check(scene.still().sides());
             (scene, possible)
         }
         Ok(job) => kelir_render::job::rehearse(job.with_scene(scene)),

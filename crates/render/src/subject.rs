@@ -12,8 +12,8 @@ use crate::{Technique, techniques};
 
 /// What one image shows.
 pub trait Subject: Clone {
-    /// Width and height of what is shown, metres; an image has their ratio.
-    fn sides_m(&self) -> [f64; 2];
+    /// Width and height of what is shown, in one unit: an image has their ratio.
+    fn sides(&self) -> [f64; 2];
 
     /// The radiance shown as white on images of all of these: what is written, or else the brightest that can be seen without shadow.
     fn white(all: &[Self], view: &View) -> f64;
@@ -89,7 +89,7 @@ pub const MEMORY: u64 = 8 << 30;
 ///
 /// Errors: a size that is not the subject's ratio, or that takes more than [`MEMORY`].
 pub fn check_view(subject: &impl Subject, view: &View) -> Result<(), RenderError> {
-    view.check(subject.sides_m())?;
+    view.check(subject.sides())?;
     let bytes = subject.bytes(view);
     if bytes <= MEMORY {
         return Ok(());
@@ -104,7 +104,7 @@ pub fn check_view(subject: &impl Subject, view: &View) -> Result<(), RenderError
 }
 
 impl Subject for Theatre {
-    fn sides_m(&self) -> [f64; 2] {
+    fn sides(&self) -> [f64; 2] {
         project::sides_m(&self.screen)
     }
 
@@ -140,7 +140,7 @@ impl Subject for Theatre {
 }
 
 impl Subject for Stage {
-    fn sides_m(&self) -> [f64; 2] {
+    fn sides(&self) -> [f64; 2] {
         [self.camera.aspect, 1.0]
     }
 

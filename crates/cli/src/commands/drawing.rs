@@ -141,7 +141,7 @@ impl Drawing {
             PixelName::Area => Pixel::Area,
             PixelName::Centre => Pixel::Centre,
         };
-        let [width, height] = subject.sides_m();
+        let [width, height] = subject.sides();
         let size = self.size.unwrap_or_else(|| [1920, (1920.0 * height / width).round().max(1.0) as usize]);
         let view = View { size, pixel, skip: !self.no_skip };
         check_view(subject, &view).map_err(render_error)?;

@@ -115,7 +115,7 @@ pub fn measure(
     options.check(cases)?;
     let view = &options.view;
     let theatre = &scene.still();
-    view.check(theatre.sides_m())?;
+    view.check(theatre.sides())?;
     let total = cases.len() * options.backends.len() + 2;
     let mut step = |done, what: &str| progress(Progress { done, total, what });
 

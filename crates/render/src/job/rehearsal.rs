@@ -24,9 +24,9 @@ pub fn rehearse<S: Staged>(mut job: Job<S>) -> (S, Result<(), RenderError>) {
 }
 
 fn shrink<S: Staged>(job: &mut Job<S>) {
-    let [width_m, height_m] = job.scene.still().sides_m();
+    let [across, down] = job.scene.still().sides();
     let width = WIDTH.min(job.view.size[0]);
-    let height = (width as f64 * height_m / width_m).round().max(1.0);
+    let height = (width as f64 * down / across).round().max(1.0);
     job.view.size = [width, height as usize];
     for technique in std::iter::once(&mut job.technique).chain(&mut job.reference) {
         technique.sample_at_most(SPP);

@@ -29,7 +29,7 @@ impl Card {
 }
 
 impl Subject for Card {
-    fn sides_m(&self) -> [f64; 2] {
+    fn sides(&self) -> [f64; 2] {
         [2.0, 1.0]
     }
 
@@ -168,7 +168,7 @@ fn a_card_is_drawn_through_the_door() {
     square.view.size = [64, 64];
     let (deck, refused) = rehearse(square);
     assert_eq!(deck.name, "a deck");
-    assert!(refused.unwrap_err().to_string().contains("2 m x 1 m"));
+    assert!(refused.unwrap_err().to_string().contains("as 2 by 1"));
     assert!(rehearse(cards(pa(), Output::Animation)).1.is_ok());
 }
 
