@@ -63,7 +63,10 @@ fn knobs_are_those_of_the_technique() {
     no("pa", &["--knob", "spilt=2"], &["spilt = 2: pa has no such knob (did you mean split?)"]);
     no("pa", &["--knob", "split"], &["--knob split: write NAME=VALUE"]);
     no("pa", &["--split", "2", "--knob", "split=3"], &["split is turned twice"]);
-    refused(&["technique", "pcs"], &["must be one of pa, mc, points, pcss and oracle (did you mean pcss?)"]);
+    refused(
+        &["technique", "pcs"],
+        &["must be one of pa, mc, points, pcss, oracle and raytrace (did you mean pcss?)"],
+    );
     // The same by either way, and other than when nothing is turned.
     let picture = |knobs: &[&'static str]| {
         let args = draw("mc", knobs);

@@ -168,7 +168,7 @@ fn a_broken_wall_is_seen() {
         "kelir-study names kelir-fixtures: only tests may",
         "kelir-render names wgpu: only kelir-frame and kelir-theatre may",
         "kelir-house names kelir-theatre: only kelir-render may",
-        "kelir-house names kelir-frame: only kelir-theatre and kelir-render may",
+        "kelir-house names kelir-frame: only kelir-theatre and kelir-stage and kelir-render may",
         "kelir-frame reaches kelir-scene: it must know nothing of it",
     ] {
         assert!(found.iter().any(|v| v == broken), "{broken}: {found:?}");

@@ -3,8 +3,7 @@
 use crate::library::Library;
 use crate::task::{Made, Maker, Task};
 use kelir_render::camera::Camera;
-use kelir_render::job::{Drawing, Job, Output, Progress, run};
-use kelir_render::subject::{Staged, Subject};
+use kelir_render::job::{Drawing, Job, Output, Progress, Staged, Subject, run};
 use kelir_render::{Backend, Pixel, RenderError, Technique, View};
 use kelir_scene::AnyScene;
 use kelir_study::{Condition, Kind, Problem};

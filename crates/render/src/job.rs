@@ -16,7 +16,8 @@ use sha2::{Digest, Sha256};
 
 use crate::camera::Camera;
 use crate::exposure::Rule;
-use crate::subject::{Staged, Subject, check_view};
+use crate::subject::check_view;
+pub use crate::subject::{Staged, Subject};
 use crate::{Backend, Pixel, RenderError, Technique, View};
 
 pub use drawing::{Drawing, Drawn};

@@ -168,7 +168,8 @@ fn a_card_is_drawn_through_the_door() {
     square.view.size = [64, 64];
     let (deck, refused) = rehearse(square);
     assert_eq!(deck.name, "a deck");
-    assert!(refused.unwrap_err().to_string().contains("as 2 by 1"));
+    let refused = refused.unwrap_err().to_string();
+    assert!(refused.contains("as 2 by 1"), "{refused}");
     assert!(rehearse(cards(pa(), Output::Animation)).1.is_ok());
 }
 
