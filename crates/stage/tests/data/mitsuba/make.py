@@ -9,7 +9,7 @@ in radiance, and SE.R, SE.G, SE.B its standard error, f32. Seeds are fixed; anot
 
 Where Mitsuba has no such thing:
 - a sun with a radius is a disk at 10 km, whose cone differs over 1 m by 0.1 mrad;
-- Mitsuba's sky has rows of texels from pole to pole, kelir's has none at the poles: so Mitsuba gets the sky in rows of its own, 32 times as fine;
+- Mitsuba's sky has rows of texels from pole to pole, kelir's has none at the poles: so Mitsuba gets the sky in rows of its own, about 32 times as fine;
 - Mitsuba's projector throws a slide's irradiance on a plane, kelir's radiant intensity: so Mitsuba gets the slide times the cube of the cosine.
 """
 import os
@@ -128,10 +128,12 @@ def bilinear(picture, x, y, around):
     return row(y0) * (1 - fy) + row(y1) * fy
 
 
-def fine_sky(picture, times=32):
+def fine_sky(picture):
+    # Odd one way and even the other: the middles of kelir's texels are among those of the fine ones, so that its kinks stay.
+    along, down = 33, 32
     rows, columns, _ = picture.shape
-    u = (np.arange(columns * times) + 0.5) / (columns * times)
-    v = np.arange(rows * times + 1) / (rows * times)
+    u = (np.arange(columns * along) + 0.5) / (columns * along)
+    v = np.arange(rows * down + 1) / (rows * down)
     return bilinear(picture.astype(float), u * columns - 0.5, v * rows - 0.5, True)
 
 
