@@ -87,7 +87,7 @@ fn knobs_are_those_of_the_technique() {
     let document: serde_json::Value = serde_json::from_str(&kelir_ok(&["technique", "--json"])).unwrap();
     let names: Vec<&str> =
         document.as_array().unwrap().iter().map(|t| t["technique"].as_str().unwrap()).collect();
-    assert_eq!(names, ["pa", "mc", "points", "pcss", "oracle"]);
+    assert_eq!(names, ["pa", "mc", "points", "pcss", "oracle", "raytrace"]);
 }
 
 #[test]
