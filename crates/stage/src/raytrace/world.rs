@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use kelir_mesh::Mesh;
 use kelir_scene::stage::{Form, LightKind, Object, Stage, Surface};
 
-use super::rays::{Hits, LANES, NOTHING, Origin, Rays};
+use super::rays::{Hits, LANES, NOTHING, Rays};
 use super::shapes;
 use super::tree::Tree;
 
@@ -315,6 +315,5 @@ pub(super) fn leaving(position: &[DVec3; LANES], directions: &[DVec3; LANES], sk
     };
     let longest = directions.iter().map(|d| d.length()).filter(|l| l.is_finite()).fold(0.0, f64::max);
     rays.near = if longest > 0.0 { skin_m / longest } else { 0.0 };
-    debug_assert!(same == matches!(rays.origin, Origin::One(_)));
     rays
 }
